@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symobs.cli.shared.common import chosen_format, progress_on_terminal, run_work
+from symobs.cli.shared.common import progress_on_terminal, run_work
 from symobs.cli.shared.options import OF_A_PAGE, OneOf, options
-from symobs.cli.shared.outcome import check_targets, convention_of, page_of, solved
+from symobs.cli.shared.outcome import PageOptions, solved
 from symobs.ground.errors import ProblemErrors, SymobsError, UsageError
 from symobs.problem import OPEN, validate
 from symobs.system.specification import CHOICES, KINDS
 from symobs.tasks.result import methods
-from symobs.tasks.result.output_methods import WebPage
 
 if TYPE_CHECKING:
     from symobs.cli.shared.outcome import Outcome
@@ -81,34 +80,17 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
         chosen = {name: value for name, value in options_given.items() if name.startswith(group) and value is not None}
         return {name.removeprefix(group): value for name, value in chosen.items()}
 
-    default = "text" if options_given["printed"] else "latex"
-    chosen = chosen_format(options_given["format_name"], options_given["target"], default=default)
-    check_targets(options_given["target"], options_given["plot"], options_given["bibliography"])
-    of_numbers = {name: options_given[name] for name in ("digits", "exact", "printed", "period", "hold", "references")}
-    detail, language, templates = (options_given[name] for name in ("detail", "language", "templates"))
-    web = WebPage(options_given["details"], options_given["copy"])
-    page = page_of(detail, language, templates, chosen, web, **of_numbers)
-    page["settings"] = options_given["settings"]
+    page = PageOptions.of(options_given)
     plant = given("plant_")
     if plant.get("dt", "").lower() == "true":
         plant["dt"] = True
     symbols = dict(_declaration(entry) for entry in options_given["symbols"]) if options_given["symbols"] else OPEN
     data = {"task": task.name, "plant": plant, "specification": given("given_"), "symbols": symbols}
-    data |= {"language": page["language"]} if "language" in page else {}
-    convention = convention_of(options_given["convention_name"])
+    data |= {"language": page.document["language"]} if "language" in page.document else {}
 
     def work(report_progress: Progress) -> Outcome:
         show_progress = progress_on_terminal(report_progress)
-        return solved(
-            validate(data),
-            chosen,
-            options_given["target"],
-            options_given["plot"],
-            convention,
-            show_progress,
-            bibliography=options_given["bibliography"],
-            **page,
-        )
+        return solved(validate(data), page, show_progress)
 
     try:
         run_work(work, options_given["timeout"], options_given["memory"], task.name)

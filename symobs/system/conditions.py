@@ -228,6 +228,18 @@ def vanishing_factors(values: Iterable[Scalar], signs: Mapping[str, str]) -> tup
     return tuple(found)
 
 
+def joined(own: Iterable[Condition], others: Iterable[Condition]) -> tuple[Condition, ...]:
+    """Return conditions, and those of the others whose expressions are not among theirs."""
+    first = tuple(own)
+    known = {condition.expression for condition in first}
+    return (*first, *(condition for condition in others if condition.expression not in known))
+
+
+def nonzero(kind: str, factors: Iterable[Scalar]) -> Iterator[Condition]:
+    """Yield the conditions of a kind that factors are not 0."""
+    return (Condition(kind, factor) for factor in factors)
+
+
 def real_consequences(polynomial: Scalar, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
     """Return polynomials that vanish at all real zeros of `polynomial` with these signs.
 

@@ -32,7 +32,6 @@ from symobs.ground.errors import InputError, ProblemErrors, SymobsError, UsageEr
 from symobs.pages.page.sheet import Header, Sheet, SheetEntry
 from symobs.problem.sheet_file import SheetFile, SheetProblem, is_sheet, read_sheet
 from symobs.tasks.result import format_named, formats, tasks
-from symobs.tasks.result.output_methods import WebPage
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,18 +56,10 @@ def command(
     title: str,
     questions: bool,  # noqa: FBT001 - click's signature
     solutions: bool,  # noqa: FBT001
-    detail: str | None,
-    references: str,
-    language: str | None,
-    digits: object,
-    exact: bool,  # noqa: FBT001
-    details: bool,  # noqa: FBT001
-    copy: bool,  # noqa: FBT001
-    live: str,
-    templates: str | None,
     convention_name: str | None,
     timeout: float | None,
     memory: float | None,
+    **given: Any,
 ) -> None:
     """Put several problem FILEs on one sheet: all questions first, then all solutions.
 
@@ -80,12 +71,10 @@ def command(
     if questions and solutions:
         raise UsageError("both --questions and --solutions are given", repair="leave both out for both")
     chosen = _sheet_format(format_name, target)
-    web = WebPage(details, copy, live)
-    of_numbers: dict[str, Any] = {"digits": digits, "exact": exact}
-    page_options = page_of(detail, language, templates, chosen.name, web, references=references, **of_numbers)
+    page_options = page_of(chosen.name, given)
     check_target(target)
     file = _sheet_file(files)
-    if language is None and file.language:
+    if given["language"] is None and file.language:
         page_options["language"] = file.language
     wanted = Wanted(
         chosen,

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from symobs.cli.shared.common import chosen_format, place_of, progress_on_terminal, read_file, run_work
+from symobs.cli.shared.common import place_of, progress_on_terminal, read_file, run_work
 from symobs.cli.shared.options import OF_A_PAGE, AFile, OneOf, options, quoted
-from symobs.cli.shared.outcome import check_targets, convention_of, of_problem, page_of, solved
+from symobs.cli.shared.outcome import PageOptions, of_problem, solved
 from symobs.ground.errors import UsageError
 from symobs.problem import parse, validate
 from symobs.tasks.result import tasks
-from symobs.tasks.result.output_methods import WebPage
 
 if TYPE_CHECKING:
     from symobs.cli.shared.outcome import Outcome
@@ -26,57 +25,19 @@ if TYPE_CHECKING:
 @click.option("--variant", type=click.IntRange(1), metavar="N", help="Of a file with [variants]: the N-th one (1).")
 @options(*OF_A_PAGE)
 def command(
-    file: str,
-    task_name: str | None,
-    variant: int | None,
-    format_name: str | None,
-    target: str | None,
-    plot: str | None,
-    bibliography: str | None,
-    convention_name: str | None,
-    detail: str | None,
-    references: str,
-    language: str | None,
-    digits: object,
-    exact: bool,  # noqa: FBT001 - click's signature
-    details: bool,  # noqa: FBT001
-    copy: bool,  # noqa: FBT001
-    live: str,
-    templates: str | None,
-    printed: tuple[str, ...],
-    period: str | None,
-    hold: str,
-    settings: dict[str, str],
-    timeout: float | None,
-    memory: float | None,
+    file: str, task_name: str | None, variant: int | None, timeout: float | None, memory: float | None, **given: Any
 ) -> None:
     """Solve a problem FILE (TOML or JSON; - is standard input) and print its derivation."""
-    chosen = chosen_format(format_name, target, default="text" if printed else "latex")
     if task_name is not None and task_name not in tasks():
         raise UsageError(f"{quoted(task_name)} is not a task", repair=f"known tasks are {', '.join(sorted(tasks()))}")
-    check_targets(target, plot, bibliography)
-    convention = convention_of(convention_name)
-    numbers: dict[str, Any] = {"printed": printed, "period": period, "hold": hold, "references": references}
-    web = WebPage(details, copy, live)
-    page = page_of(detail, language, templates, chosen, web, digits=digits, exact=exact, **numbers)
+    page = PageOptions.of(given)
 
     def work(report_progress: Progress) -> Outcome:
         tables = _tables(read_file(file), file, variant)
         found = validate(tables, task_name, Path(file).parent)
-        page["web"] = of_problem(web, tables if task_name is None else {**tables, "task": task_name, "tasks": None})
-        report_progress = progress_on_terminal(report_progress)
-        return solved(
-            found,
-            chosen,
-            target,
-            plot,
-            convention,
-            report_progress,
-            bibliography=bibliography,
-            only_some_tasks=task_name is not None,
-            settings=settings,
-            **page,
-        )
+        own = tables if task_name is None else {**tables, "task": task_name, "tasks": None}
+        offered = page.offering(of_problem(page.document["web"], own))
+        return solved(found, offered, progress_on_terminal(report_progress), only_some_tasks=task_name is not None)
 
     run_work(work, timeout, memory, place_of(file))
 

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from symobs.cli.shared.common import EXIT_NO, EXIT_UNDECIDED, chosen_format
 from symobs.cli.shared.output import check_target
 from symobs.ground.child_processes.budget import Budget
 from symobs.ground.dataclass import dataclass
@@ -17,10 +18,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from symobs.cli.shared.time_and_memory import Progress
-
-
-#: Exit codes of the contract.
-EXIT_NO, EXIT_UNDECIDED = 4, 5
 
 
 @dataclass(frozen=True)
@@ -42,32 +39,49 @@ def convention_of(name: str | None) -> Any:
     return convention_named(name)
 
 
-def page_of(
-    detail: str | None,
-    language: str | None,
-    templates: str | None,
-    format_name: str,
-    web: WebPage = PLAIN,
-    *,
-    digits: object = None,
-    exact: bool = False,
-    references: str = "short",
-    **others: Any,
-) -> dict[str, Any]:
-    """Return the options of a page: --detail, --language, --digits, --templates, web pages; the others as they are.
+@dataclass(frozen=True)
+class PageOptions:
+    """The options of a command that writes the page of one problem; `document` has those of the document."""
+
+    format_name: str
+    target: str | None
+    plot: str | None
+    bibliography: str | None
+    convention: Any
+    settings: Mapping[str, str]
+    document: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> PageOptions:
+        """Return the options of a command line; raises an error, before any work, for what cannot be written."""
+        default = "text" if given["printed"] else "latex"
+        chosen = chosen_format(given["format_name"], given["target"], default=default)
+        places = given["target"], given["plot"], given["bibliography"]
+        check_targets(*places)
+        convention = convention_of(given["convention_name"])
+        return cls(chosen, *places, convention, given["settings"], page_of(chosen, given))
+
+    def offering(self, web: WebPage) -> PageOptions:
+        """Return the same options with other parts of a web page."""
+        return replace(self, document={**self.document, "web": web})
+
+
+def page_of(format_name: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the options of the document among those given to a command.
 
     Raises `UsageError` for unknown values, and for options of pages that the format does not write.
     """
     from symobs.pages.page.detail_level import detail_named  # noqa: PLC0415 - it imports the steps
     from symobs.tasks.result.output_methods import detail_of, digits_asked  # noqa: PLC0415
 
-    asked = digits_asked(digits, exact=exact, where="--digits")
+    language, templates = given["language"], given["templates"]
+    web = WebPage(given["details"], given["copy"], given.get("live", ""))
+    asked = digits_asked(given["digits"], exact=given["exact"], where="--digits")
     page = {
-        "detail": detail_named(detail or detail_of(format_name), "--detail"),
+        "detail": detail_named(given["detail"] or detail_of(format_name), "--detail"),
         "web": web,
-        "references": references,
         **({} if asked is None else {"digits": asked}),
-        **others,
+        **{name: given[name] for name in ("references", "printed", "period", "hold") if name in given},
     }
     if web != PLAIN and format_name != "html":
         where = next(f"--{name}" for name in ("details", "copy", "live") if getattr(web, name))
@@ -125,40 +139,29 @@ def check_targets(target: str | None, plot: str | None, bibliography: str | None
             raise UsageError("the result is written to that file", where="--plot", repair="name another file")
 
 
-def solved(
-    found: Any,
-    format_name: str,
-    target: str | None,
-    plot: str | None,
-    convention: Any,
-    report_progress: Progress,
-    *,
-    bibliography: str | None = None,
-    only_some_tasks: bool = False,
-    settings: Mapping[str, str] | None = None,
-    **page: Any,
-) -> Outcome:
+def solved(found: Any, options: PageOptions, report_progress: Progress, *, only_some_tasks: bool = False) -> Outcome:
     """Solve a problem and return the outcome: its document, its plot, messages and exit code.
 
-    `settings` are values of parameters; what the file expects is held against the answers before they are set.  With
-    `only_some_tasks`, the expected answers of the file's other tasks are ignored.  `page` holds options of the document.
-    `report_progress` is called with each task begun, and with the outcome that is kept if the work is ended.
+    What the file expects is held against the answers before values of parameters are set.  With `only_some_tasks`, the
+    expected answers of the file's other tasks are ignored.  `report_progress` is called with each task begun, and with
+    the outcome that is kept if the work is ended.
     """
     from symobs.problem.expect import applicable, mismatches  # noqa: PLC0415
     from symobs.tasks.result import render  # noqa: PLC0415
 
+    format_name, target, plot, bibliography = options.format_name, options.target, options.plot, options.bibliography
+    shows_parts = not options.document["printed"]  # answers of tasks not yet begun are none
+
     def document_of(results: tuple[Any, ...]) -> Any:
-        return replace(found.document(results, convention), **page)
+        return replace(found.document(results, options.convention), **options.document)
 
     def rendered(results: tuple[Any, ...]) -> str | bytes:
         return typeset_slides(render(document_of(results), format_name), format_name, target)
 
     def begins(name: str, so_far: tuple[Any, ...]) -> None:
         if format_name == "json":
-            report_progress(partial(_as_far_as, found, so_far, convention, target))
-        elif (
-            so_far and not runs_tex(format_name, target) and not page.get("printed")
-        ):  # TeX's time; answers of tasks not yet begun
+            report_progress(partial(_as_far_as, found, so_far, options))
+        elif so_far and shows_parts and not runs_tex(format_name, target):  # TeX takes its time
             report_progress(lambda: Outcome(((rendered(so_far), target),), (), EXIT_UNDECIDED))
         report_progress(name)
 
@@ -167,14 +170,13 @@ def solved(
     except Undecided as error:
         done: Any = error.facts["results"]
         if format_name == "json":
-            return replace(_as_far_as(found, done, convention, target, str(error)), messages=(str(error),))
-        partial_page = done and not page.get("printed")
-        return Outcome(((rendered(done), target),) if partial_page else (), (str(error),), EXIT_UNDECIDED)
+            return replace(_as_far_as(found, done, options, str(error)), messages=(str(error),))
+        return Outcome(((rendered(done), target),) if done and shows_parts else (), (str(error),), EXIT_UNDECIDED)
     viewed = found.viewed(results)
     expect = applicable(viewed, found.expect) if only_some_tasks else found.expect
     unmet = mismatches(viewed, expect)
-    if settings:
-        results = _at(results, settings)
+    if options.settings:
+        results = _at(results, options.settings)
     report_progress("the page")
     outputs = [(rendered(results), target)]
     if bibliography is not None:
@@ -207,14 +209,14 @@ def _at(results: tuple[Any, ...], settings: Mapping[str, str]) -> tuple[Any, ...
         raise
 
 
-def _as_far_as(found: Any, so_far: tuple[Any, ...], convention: Any, target: str | None, reason: str = "") -> Outcome:
+def _as_far_as(found: Any, so_far: tuple[Any, ...], options: PageOptions, reason: str = "") -> Outcome:
     """Return what is left where the work ends now: the results so far, every other task undecided."""
     from symobs.pages.formats.json import given_up  # noqa: PLC0415 - only with --format json
 
     names, method = [task.name for task in found.tasks], str(found.specification.get("method", "auto"))
-    document = found.document(so_far, convention)
+    document = found.document(so_far, options.convention)
     whole = given_up(document, names, method, found.plant.symbols.signs, reason)
-    return Outcome(((whole, target),), (), EXIT_UNDECIDED)
+    return Outcome(((whole, options.target),), (), EXIT_UNDECIDED)
 
 
 def bounded(work: Callable[[Progress], Outcome], timeout: float | None, memory: float | None, where: str) -> Outcome:

@@ -18,7 +18,7 @@ from symobs.ground.errors import CertificateRejected, DerivationRejected, Undeci
 from symobs.proof.certificate.claims import BEYOND_LIMITS, UNREADABLE, Certificate, Claim, Statement, check_all
 from symobs.proof.derivation import translated
 from symobs.proof.derivation.builder import Builder, without_failing_cases
-from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.conditions import Condition, joined, nonzero, vanishing_factors
 from symobs.tasks.result.output_methods import PLAIN, WebPage, detail_of, document_options, to_sympy
 from symobs.tasks.result.task_traits import TaskTraits
 from symobs.tasks.result.writers import render, writer_of
@@ -167,22 +167,25 @@ class Result(TaskTraits):
 
     # -- conditions ----------------------------------------------------------------------------------------------------
 
+    @property
+    def further_data(self) -> tuple[Matrix, ...]:
+        """The matrices that are given beside the plant."""
+        return ()
+
     @cached_property
     def domain(self) -> tuple[Condition, ...]:
-        """What must not vanish for there to be a plant: what its data divide by."""
+        """What must not vanish for there to be a plant and further data: what they divide by."""
         m = self.plant.matrices
         divisors = [*_denominators([m.A, m.B, m.C, m.D]), *self.plant.apart]
         divisors += [] if self.plant.is_stratum else self.plant.nonzero
-        factors = vanishing_factors(divisors, self.plant.symbols.signs)
-        return tuple(Condition("domain", factor) for factor in factors)
+        divisors += _denominators(self.further_data)
+        return tuple(nonzero("domain", vanishing_factors(divisors, self.plant.symbols.signs)))
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The exact conditions under which the answer holds, without those implied by the declared signs."""
-        known = {condition.expression for condition in self.domain}
         factors = vanishing_factors(_denominators(self.answer.values()), self.plant.symbols.signs)
-        new = [factor for factor in factors if factor not in known and self.plant.variable not in factor.names]
-        return (*self.domain, *(Condition("claim", factor) for factor in new))
+        return joined(self.domain, nonzero("claim", (f for f in factors if self.plant.variable not in f.names)))
 
     @property
     def conditions(self) -> tuple[Any, ...]:

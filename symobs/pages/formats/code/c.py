@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from symobs.pages.formats.code.program import in_doubles, program_of
+from symobs.pages.formats.code.program import program_of
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:
-    from symobs.exact import Matrix
     from symobs.tasks.result import Document
 
 _TEMPLATE = """/*
@@ -75,19 +74,13 @@ class C:
             gathered.append(f"    for (int i = 0; i < {size}; i++)\n        inputs[{place}] = {name}[i];")
             start += size
         return _TEMPLATE.format(
-            **{name: _rows(getattr(program.numbers, name)) for name in "ABCD"},
-            lines="\n".join(f" * {line}" for line in program.lines),
-            name=program.name,
-            order=program.order,
-            width=program.width,
-            outputs=program.output[1],
-            output=program.output[0],
+            **program.slots(_rows, " * "),
             inputs=" and ".join(name for name, _ in program.inputs),
             arguments=", ".join(f"const double {name}[{size}]" for name, size in program.inputs),
             gathered="\n".join(gathered),
         )
 
 
-def _rows(matrix: Matrix) -> str:
-    rows = ",\n".join(f"    {{ {', '.join(row)} }}" for row in in_doubles(matrix))
+def _rows(table: list[list[str]]) -> str:
+    rows = ",\n".join(f"    {{ {', '.join(row)} }}" for row in table)
     return f"{{\n{rows}\n}}"

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from symobs.pages.formats.code.program import in_doubles, number_rows, program_of
+from symobs.pages.formats.code.program import number_rows, program_of
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:
-    from symobs.exact import Matrix
     from symobs.tasks.result import Document
 
 _TEMPLATE = """function [{output}, state] = {name}_step(state, {arguments})
@@ -42,21 +41,16 @@ class Matlab:
         """Return a function file."""
         program = program_of(document)
         return _TEMPLATE.format(
-            **{name: _rows(getattr(program.numbers, name)) for name in "ABCD"},
-            lines="\n".join(f"% {line}" for line in program.lines),
-            name=program.name,
-            order=program.order,
+            **program.slots(_rows, "% "),
             arguments=", ".join(name for name, _ in program.inputs),
             joined="; ".join(f"{name}(:)" for name, _ in program.inputs),
-            sizes=", ".join(f"{name}: {size}" for name, size in program.inputs),
-            output=program.output[0],
         )
 
     def answers(self, document: Document) -> str:
         """Return the numbers as assignments."""
         rows = number_rows(document, "a matrix of MATLAB")
-        return "".join(f"{name} = [{'; '.join(' '.join(row) for row in table)}];\n" for name, table in rows.items())
+        return "".join(f"{name} = {_rows(table)};\n" for name, table in rows.items())
 
 
-def _rows(matrix: Matrix) -> str:
-    return "[" + "; ".join(" ".join(row) for row in in_doubles(matrix)) + "]"
+def _rows(table: list[list[str]]) -> str:
+    return "[" + "; ".join(" ".join(row) for row in table) + "]"

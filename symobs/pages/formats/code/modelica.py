@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from symobs.ground.errors import UsageError
-from symobs.pages.formats.code.program import in_doubles, program_of
+from symobs.pages.formats.code.program import program_of
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:
-    from symobs.exact import Matrix
     from symobs.tasks.result import Document
 
 _TEMPLATE = """block {kind}
@@ -56,17 +55,12 @@ class Modelica:
             inputs=joined, output=program.output[0], period="" if period is None else repr(float(period))
         )
         return _TEMPLATE.format(
-            **{name: _rows(getattr(program.numbers, name)) for name in "ABCD"},
-            kind=program.name.capitalize(),
-            lines="\n".join(f"  // {line}" for line in program.lines),
+            **program.slots(_rows, "  // "),
             signals="\n".join([*signals, f"  output Real {program.output[0]}[{program.output[1]}];"]),
-            order=program.order,
-            width=program.width,
-            outputs=program.output[1],
             state="Real" if period is None else "discrete Real",
             equations=equations,
         )
 
 
-def _rows(matrix: Matrix) -> str:
-    return "{" + ", ".join(f"{{{', '.join(row)}}}" for row in in_doubles(matrix)) + "}"
+def _rows(table: list[list[str]]) -> str:
+    return "{" + ", ".join(f"{{{', '.join(row)}}}" for row in table) + "}"

@@ -27,6 +27,8 @@ from symobs.tasks.result.in_convention import ResultInConvention
 from symobs.tasks.result.output_methods import to_json
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from symobs.system import StateSpace
     from symobs.tasks.result import Document
 
@@ -47,15 +49,20 @@ class CodeProgram(NamedTuple):
     period: Fraction | None
     lines: tuple[str, ...]
 
-    @property
-    def order(self) -> int:
-        """The number of states."""
-        return self.numbers.A.shape[0]
-
-    @property
-    def width(self) -> int:
-        """The number of inputs together."""
-        return self.numbers.B.shape[1]
+    def slots(self, table: Callable[[list[list[str]]], str], comment: str = "") -> dict[str, object]:
+        """Return what the templates of all languages name: sizes, signals, matrices as `table` writes them, comments."""
+        (order, width), (output, outputs) = self.numbers.B.shape, self.output
+        matrices = {name: table(in_doubles(getattr(self.numbers, name))) for name in "ABCD"}
+        return matrices | {
+            "lines": "\n".join(comment + line for line in self.lines),
+            "name": self.name,
+            "kind": self.name.capitalize(),
+            "order": order,
+            "width": width,
+            "output": output,
+            "outputs": outputs,
+            "sizes": ", ".join(f"{name}: {size}" for name, size in self.inputs),
+        }
 
 
 def program_of(document: Document, *, in_continuous_time: bool = False) -> CodeProgram:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from symobs.pages.formats.code.program import in_doubles, program_of
+from symobs.pages.formats.code.program import program_of
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:
-    from symobs.exact import Matrix
     from symobs.tasks.result import Document
 
 _TEMPLATE = '''"""{lines}"""
@@ -50,17 +49,12 @@ class Python:
         """Return a module."""
         program = program_of(document)
         return _TEMPLATE.format(
-            **{name: _rows(getattr(program.numbers, name)) for name in "ABCD"},
-            lines="\n\n".join(program.lines) + "\n",
-            kind=program.name.capitalize(),
-            order=program.order,
+            **program.slots(_rows) | {"lines": "\n\n".join(program.lines) + "\n"},
             arguments=", ".join(name for name, _ in program.inputs),
             joined=", ".join(f"*{name}" for name, _ in program.inputs),
-            sizes=", ".join(f"{name}: {size}" for name, size in program.inputs),
-            output=program.output[0],
         )
 
 
-def _rows(matrix: Matrix) -> str:
+def _rows(table: list[list[str]]) -> str:
     """Return a matrix as a list of rows, one a line."""
-    return "[\n" + "".join(f"    [{', '.join(row)}],\n" for row in in_doubles(matrix)) + "]"
+    return "[\n" + "".join(f"    [{', '.join(row)}],\n" for row in table) + "]"

@@ -29,10 +29,10 @@ from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import StabilityVerdict, essential, stability
 from symobs.stability.inequalities.simplify import as_inequality
-from symobs.system.conditions import Condition, sign_of, vanishing_factors
+from symobs.system.conditions import joined, nonzero, sign_of, vanishing_factors
 from symobs.system.specification import over_common_data, read_symmetric
 from symobs.tasks.analysis.page_parts import case_steps, determinant_form, given
-from symobs.tasks.analysis.strata.strata import common_places, places, solved
+from symobs.tasks.analysis.strata.strata import common_places, found_once, places, solved
 from symobs.tasks.analysis.time_response.horizons import (
     MOST_STATES,
     MOST_WITH_PARAMETERS,
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
+    from symobs.system.conditions import Condition
     from symobs.system.specification import Intensity, Name
     from symobs.tasks.analysis.strata.strata import Place
 
@@ -174,13 +175,10 @@ class LyapunovSolution(Result):
         needed = tuple(dict.fromkeys(_odd_part(m, signs) for m in self.leading if sign_of(m, signs) != "positive"))
         return StabilityVerdict("conditional", needed) if needed else StabilityVerdict("yes")
 
-    @cached_property
-    def domain(self) -> tuple[Condition, ...]:
-        """What must not vanish for there to be a plant and Q."""
-        own, signs = super().domain, self.plant.symbols.signs
-        known = {condition.expression for condition in own}
-        factors = vanishing_factors([self.weight.common_denominator()], signs)
-        return (*own, *(Condition("domain", factor) for factor in factors if factor not in known))
+    @property
+    def further_data(self) -> tuple[Matrix, ...]:
+        """The weight Q."""
+        return (self.weight,)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
@@ -190,9 +188,8 @@ class LyapunovSolution(Result):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The domain, the determinant, and the denominators of P where it is one of many."""
-        found = [Condition("existence", f) for f in vanishing_factors(self.existence, self.plant.symbols.signs)]
-        known = {c.expression for c in (*self.domain, *found)}
-        return (*self.domain, *found, *(c for c in super().holds_where if c.expression not in known))
+        found = nonzero("existence", vanishing_factors(self.existence, self.plant.symbols.signs))
+        return joined((*self.domain, *found), super().holds_where)
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
@@ -200,8 +197,7 @@ class LyapunovSolution(Result):
 
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
             Q = modulo(self.weight.substitute(values), there.ideal)
-            found: Result = there.once((type(self), Q, self.method), lambda: type(self).of(there, Q, self.method))
-            return found
+            return found_once(type(self), there, Q, self.method)
 
         return solved(self.plant, self._places, on)
 

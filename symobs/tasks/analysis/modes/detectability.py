@@ -28,7 +28,7 @@ from symobs.stability.criteria.stability import (
     stability,
 )
 from symobs.stability.inequalities.simplify import as_inequality
-from symobs.system.conditions import Condition
+from symobs.system.conditions import Condition, nonzero
 from symobs.tasks.analysis.modes.modes import (
     ModeResult,
     at_eigenvalues,
@@ -176,8 +176,7 @@ class HiddenStability(ModeResult):
             return self.domain
         listed = {c.expression for c in self.domain}
         lost = (value for value in distances(self._lost) if value not in listed)
-        others = (Condition("existence", value) for value in lost)
-        return (*self.domain, *self.hidden.where, *others)
+        return (*self.domain, *self.hidden.where, *nonzero("existence", lost))
 
     @cached_property
     def _lost(self) -> tuple[tuple[Scalar, ...], ...] | None:

@@ -30,7 +30,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
-from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.conditions import Condition, joined, nonzero, vanishing_factors
 from symobs.tasks.analysis.modes.modes import TESTS
 from symobs.tasks.analysis.page_parts import case_steps, formula_of_factored, given
 from symobs.tasks.analysis.rank.observability import power_rows
@@ -159,10 +159,9 @@ class CanonicalForm(Result):
         """The plant's domain, and where the coordinates are independent."""
         if self.answer["T"] is None:
             return self.domain
-        listed = {c.expression for c in self.domain}
         matrices = [value.common_denominator() for value in self.answer.values() if isinstance(value, Matrix)]
         factors = dict.fromkeys(vanishing_factors((*self.existence, *matrices), self.plant.symbols.signs))
-        return (*self.domain, *(Condition("existence", f) for f in factors if f not in listed))
+        return joined(self.domain, nonzero("existence", factors))
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:

@@ -19,7 +19,7 @@ from symobs.formula.tree.term import Term, block, identity, letter
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
-from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.conditions import Condition, joined, nonzero, vanishing_factors
 from symobs.tasks.analysis.page_parts import case_steps, factored_form, given, in_blocks
 from symobs.tasks.analysis.rank.observability import power_rows
 from symobs.tasks.analysis.realization.canonical_form import BLOCKS, basis, minor_of, transfer_matrix
@@ -165,13 +165,12 @@ class Decomposition(Result):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The plant's domain, and where the parts have the generic dimensions in these coordinates."""
-        listed = {c.expression for c in self.domain}
         entries = [value.common_denominator() for value in self.answer.values() if isinstance(value, Matrix)]
         claimed = [
             f for f in vanishing_factors(entries, self.plant.symbols.signs) if self.plant.variable not in f.names
         ]
         factors = dict.fromkeys((*vanishing_factors(self.existence, self.plant.symbols.signs), *claimed))
-        return (*self.domain, *(Condition("existence", f) for f in factors if f not in listed))
+        return joined(self.domain, nonzero("existence", factors))
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:

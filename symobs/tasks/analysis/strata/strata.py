@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from symobs.exact import (
     EIGENVALUE,
@@ -361,6 +361,12 @@ def solved(plant: StateSpace, asked: Iterable[Place], solve: Solve) -> tuple[Cas
 
     found = [(place, case) for place in asked for case in _case(place, plant, partial(answer, place))]
     return tuple(each for place, case in found for each in _case(place, plant, partial(with_strata, case)))
+
+
+def found_once(kind: Any, plant: StateSpace, *asked: Any) -> Result:
+    """Return `kind.of(plant, *asked)`; on a stratum what was found there once."""
+    found: Result = plant.once((kind, *asked), lambda: kind.of(plant, *asked))
+    return found
 
 
 def _case(place: Place, plant: StateSpace, find: Callable[[], Result | None]) -> Iterator[Case]:

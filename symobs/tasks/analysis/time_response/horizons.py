@@ -12,7 +12,7 @@ from symobs.formula.expression import parse_scalar
 from symobs.ground.errors import InputError
 from symobs.stability.criteria.stability import stability
 from symobs.system import read_scalar
-from symobs.system.conditions import Condition, never_zero, sign_of
+from symobs.system.conditions import Condition, joined, never_zero, nonzero, sign_of
 from symobs.system.specification import read_signal
 from symobs.tasks.analysis.rank.rank_test import minor_claim, rank_claims, rank_environment, rank_losses
 from symobs.tasks.analysis.time_response.damping_cases import DampingCases
@@ -192,9 +192,7 @@ class OfTheInitialState(DampingCases):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """That no rank is lost is a condition."""
-        known = super().holds_where
-        beyond = [Condition("existence", f) for f in self.further_zeros if f not in {c.expression for c in known}]
-        return (*known, *beyond)
+        return joined(super().holds_where, nonzero("existence", self.further_zeros))
 
     def observability_claims(self) -> Iterator[Claim]:
         """Yield the rank of the observability matrix and its kernel."""

@@ -17,7 +17,7 @@ from symobs.ground.errors import CertificateRejected
 from symobs.ground.on_demand import OnDemand
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
-from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.conditions import Condition, joined, nonzero, vanishing_factors
 from symobs.tasks.analysis.strata.strata import places, solved
 from symobs.tasks.design.compensator.output_feedback import Asked, OutputFeedback
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
@@ -106,10 +106,8 @@ class MinimalOrderCompensator(OutputFeedback):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The conditions of both gains, and that the control law can be solved for u."""
-        own = super().holds_where
-        known = {condition.expression for condition in own}
         factors = vanishing_factors([value.numerator for value in self.existence], self.plant.symbols.signs)
-        return (*own, *(Condition("existence", factor) for factor in factors if factor not in known))
+        return joined(super().holds_where, nonzero("existence", factors))
 
     @property
     def _estimator_places(self) -> tuple[Place, ...]:

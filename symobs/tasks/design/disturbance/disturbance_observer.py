@@ -20,11 +20,11 @@ from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.system import StateSpace
-from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.conditions import joined
 from symobs.system.specification import DesiredPolynomial, desired_polynomial, over_common_data
 from symobs.tasks.analysis.page_parts import case_steps, given, say_stability
 from symobs.tasks.analysis.rank.rank_page import assume_rank
-from symobs.tasks.analysis.strata.strata import solved
+from symobs.tasks.analysis.strata.strata import found_once, solved
 from symobs.tasks.design.disturbance.disturbance_input import Exosystem, read_disturbance_input, read_exosystem
 from symobs.tasks.design.full_order.observer import ObserverDesign, model_and_innovation
 from symobs.tasks.design.gain.gain_cases import design_of, places_beside
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 
     from symobs.exact import Scalar
     from symobs.formula.tree import Relation
+    from symobs.system.conditions import Condition
     from symobs.system.specification import MatrixText, Name, Poles, PolynomialText
 
 
@@ -147,21 +148,15 @@ class DisturbanceObserver(Result):
         """The matrices of the plant, and those of the exosystem."""
         return {**super().data, **{name: getattr(self.exosystem, of) for name, of in _LETTERS.items()}}
 
-    @cached_property
-    def domain(self) -> tuple[Condition, ...]:
-        """What must not vanish for there to be plant and exosystem."""
-        own, signs = super().domain, self.plant.symbols.signs
-        known = {condition.expression for condition in own}
-        factors = vanishing_factors([part.common_denominator() for part in self.exosystem], signs)
-        return (*own, *(Condition("domain", factor) for factor in factors if factor not in known))
+    @property
+    def further_data(self) -> tuple[Matrix, ...]:
+        """The matrices of the exosystem."""
+        return self.exosystem
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The conditions of the gains, and of the pair."""
-        own = super().holds_where
-        known = {condition.expression for condition in own}
-        inner = self.inner.holds_where
-        return (*own, *(c for c in inner if c.kind == "existence" and c.expression not in known))
+        return joined(super().holds_where, (c for c in self.inner.holds_where if c.kind == "existence"))
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
@@ -170,11 +165,7 @@ class DisturbanceObserver(Result):
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
             exosystem = Exosystem(*(modulo(part.substitute(values), there.ideal) for part in self.exosystem))
             desired = self.desired.substitute(values)
-            found: Result = there.once(
-                (type(self), exosystem, desired, self.method),
-                lambda: type(self).of(there, exosystem, desired, self.method),
-            )
-            return found
+            return found_once(type(self), there, exosystem, desired, self.method)
 
         return solved(self.plant, places_beside(self, self.inner), on)
 

@@ -20,12 +20,12 @@ from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.stability.criteria.stability import stability
 from symobs.system import StateSpace
-from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.conditions import joined
 from symobs.system.specification import DesiredPolynomial, desired_polynomial, over_common_data
 from symobs.tasks.analysis.page_parts import case_steps, given, is_narrow, say_stability, spread
 from symobs.tasks.analysis.rank.rank_page import assume_rank
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
-from symobs.tasks.analysis.strata.strata import common_places, solved
+from symobs.tasks.analysis.strata.strata import common_places, found_once, solved
 from symobs.tasks.design.disturbance.disturbance_input import read_disturbance_input, with_disturbance
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_beside
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.formula.tree.term import Term
+    from symobs.system.conditions import Condition
     from symobs.system.specification import MatrixText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.strata.strata import Place
 
@@ -213,21 +214,16 @@ class UnknownInputObserver(Result):
         """The matrices of the plant, and E."""
         return {**super().data, "E_d": self.disturbance_input}
 
-    @cached_property
-    def domain(self) -> tuple[Condition, ...]:
-        """What must not vanish for there to be plant and E."""
-        own, signs = super().domain, self.plant.symbols.signs
-        known = {condition.expression for condition in own}
-        factors = vanishing_factors([self.disturbance_input.common_denominator()], signs)
-        return (*own, *(Condition("domain", factor) for factor in factors if factor not in known))
+    @property
+    def further_data(self) -> tuple[Matrix, ...]:
+        """The input matrix E of the disturbance."""
+        return (self.disturbance_input,)
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The conditions of H, and of the gain."""
-        own = super().holds_where
-        known = {condition.expression for condition in own}
         inner = () if self.inner is None else self.inner.holds_where
-        return (*own, *(c for c in inner if c.kind == "existence" and c.expression not in known))
+        return joined(super().holds_where, (c for c in inner if c.kind == "existence"))
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
@@ -235,10 +231,7 @@ class UnknownInputObserver(Result):
 
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
             E, desired = modulo(self.disturbance_input.substitute(values), there.ideal), self.desired.substitute(values)
-            found: Result = there.once(
-                (type(self), E, desired, self.method), lambda: type(self).of(there, E, desired, self.method)
-            )
-            return found
+            return found_once(type(self), there, E, desired, self.method)
 
         return solved(self.plant, self.places, on)
 

@@ -36,7 +36,7 @@ from symobs.proof.certificate.pointwise import never_together_zero
 from symobs.proof.derivation.builder import relation
 from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import monic, on_boundary, stability
-from symobs.system.conditions import Condition, real_consequences, sign_of, vanishing_factors
+from symobs.system.conditions import joined, nonzero, real_consequences, sign_of, vanishing_factors
 from symobs.system.specification import over_common_data, read_symmetric
 from symobs.tasks.analysis.modes.modes import polynomial_of
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Relation
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
+    from symobs.system.conditions import Condition
     from symobs.tasks.analysis.strata.strata import Place
 
 #: With more states the proof of the digits takes seconds; with parameters no square roots write the factor in general.
@@ -262,23 +263,19 @@ class OptimalGain(Result):
         found = [value for value in found if not never_together_zero([value.numerator], known, signs)]
         return tuple(plant.simplified(value) for value in (*found, *beside))
 
-    @cached_property
-    def domain(self) -> tuple[Condition, ...]:
-        """What must not vanish for there to be a plant and weights."""
-        own, signs = super().domain, self.plant.symbols.signs
-        known = {condition.expression for condition in own}
-        factors = vanishing_factors([weight.common_denominator() for weight in self.weights.values()], signs)
-        return (*own, *(Condition("domain", factor) for factor in factors if factor not in known))
+    @property
+    def further_data(self) -> tuple[Matrix, ...]:
+        """The weights."""
+        return tuple(self.weights.values())
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The domain, existence, and the denominators of the answer."""
         values = [value for value in (self.answer[self.letter], self.answer["P"]) if value is not None]
         signs = with_signs(self.plant.symbols.signs, *values)
-        found = [Condition("existence", f) for f in vanishing_factors(self.existence, signs)]
+        found = nonzero("existence", vanishing_factors(self.existence, signs))
         below = vanishing_factors([value.common_denominator() for value in values], signs)
-        known = {c.expression for c in (*self.domain, *found)}
-        return (*self.domain, *found, *(Condition("claim", f) for f in below if f not in known))
+        return joined((*self.domain, *found), nonzero("claim", below))
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:

@@ -17,7 +17,7 @@ from symobs.ground.errors import InputError
 from symobs.proof.derivation import CaseStep, Given
 from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
 from symobs.stability.inequalities.simplify import as_inequality
-from symobs.system.conditions import Condition, sign_of
+from symobs.system.conditions import Condition, joined, sign_of
 from symobs.system.specification import read_quantity
 from symobs.system.specification.pole_patterns import overshoot_of, overshoot_within, third_digit
 from symobs.tasks.analysis.page_parts import (
@@ -72,8 +72,7 @@ class PoleAdvice(AdvisedPoles):
         for factor in self.taken:
             needed = needed_of(factor, signs, self.answer["sigma"], self.plant.variable)
             own += [Condition("claim", value, ">") for value in needed]
-        listed = {condition.expression for condition in own}
-        return (*own, *(c for c in self._existence if c.expression not in listed))
+        return joined(own, self._existence)
 
     @cached_property
     def _existence(self) -> tuple[Condition, ...]:

@@ -18,6 +18,7 @@ from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import relation
 from symobs.system import StateSpace
+from symobs.system.conditions import joined
 from symobs.system.specification import (
     DesiredPolynomial,
     MatrixText,
@@ -258,10 +259,7 @@ class ReducedOrderObserver(Result):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The conditions of the coordinates and of the inner gain."""
-        own = super().holds_where
-        known = {condition.expression for condition in own}
-        inner = [c for c in self.inner.holds_where if c.kind == "existence" and c.expression not in known]
-        return (*own, *inner)
+        return joined(super().holds_where, (c for c in self.inner.holds_where if c.kind == "existence"))
 
     @property
     def unmoved_modes(self) -> tuple[Root, ...]:

@@ -15,7 +15,7 @@ from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation import CaseStep, Conclude
 from symobs.proof.derivation.builder import Builder, relation, sentence
-from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.conditions import joined, nonzero, vanishing_factors
 from symobs.tasks.analysis.page_parts import factored_form, formula_of_factored
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.system import StateSpace
+    from symobs.system.conditions import Condition
     from symobs.system.specification import GainText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.strata.strata import Place
     from symobs.tasks.design.compensator.output_feedback import OutputFeedback
@@ -200,13 +201,8 @@ class FeedforwardDesign(Result):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The conditions of the gains and of F."""
-        own = super().holds_where
-        known = {condition.expression for condition in own}
-        further = {c.expression: c for c in self.loop.holds_where if c.expression not in known}
-        for factor in vanishing_factors([value.numerator for value in self.existence], self.plant.symbols.signs):
-            if factor not in known:
-                further.setdefault(factor, Condition("existence", factor))
-        return (*own, *further.values())
+        factors = vanishing_factors([value.numerator for value in self.existence], self.plant.symbols.signs)
+        return joined(joined(super().holds_where, self.loop.holds_where), nonzero("existence", factors))
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:

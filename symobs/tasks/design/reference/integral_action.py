@@ -23,12 +23,12 @@ from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.stability.criteria.stability import stability
 from symobs.system import StateSpace
-from symobs.system.conditions import Condition, vanishing_factors
+from symobs.system.conditions import joined, nonzero, vanishing_factors
 from symobs.system.specification import DesiredPolynomial, desired_polynomial, over_common_data
 from symobs.tasks.analysis.page_parts import case_steps, given, say_stability
 from symobs.tasks.analysis.strata.loci import distance_from, loci
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
-from symobs.tasks.analysis.strata.strata import outside, region_of, solved
+from symobs.tasks.analysis.strata.strata import found_once, outside, region_of, solved
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_where
 from symobs.tasks.design.gain.gain_design import letters_of
@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.formula.tree import Relation
+    from symobs.system.conditions import Condition
     from symobs.system.specification import Name, Poles, PolynomialText
 
 
@@ -192,20 +193,14 @@ class IntegralAction(Result):
         known = super().holds_where
         if self.answer["K"] is None:
             return known
-        listed = {condition.expression for condition in known}
-        factors = vanishing_factors(self.distances, self.plant.symbols.signs)
-        return (*known, *(Condition("existence", factor) for factor in factors if factor not in listed))
+        return joined(known, nonzero("existence", vanishing_factors(self.distances, self.plant.symbols.signs)))
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """The design where other modes than in general are beyond any gain, or none are."""
 
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
-            desired = self.desired.substitute(values)
-            found: Result = there.once(
-                (type(self), desired, self.method), lambda: type(self).of(there, desired, self.method)
-            )
-            return found
+            return found_once(type(self), there, self.desired.substitute(values), self.method)
 
         return solved(self.plant, places_where(self.loop), on)
 

@@ -217,13 +217,10 @@ class OutputRegulation(Result):
         """The matrices of the plant, and those of the exosystem."""
         return {**super().data, **{name: getattr(self.exogenous, of) for name, of in _LETTERS.items()}}
 
-    @cached_property
-    def domain(self) -> tuple[Condition, ...]:
-        """What must not vanish for there to be plant and exosystem."""
-        own, signs = super().domain, self.plant.symbols.signs
-        known = {condition.expression for condition in own}
-        factors = vanishing_factors([part.common_denominator() for part in self.exogenous], signs)
-        return (*own, *(Condition("domain", factor) for factor in factors if factor not in known))
+    @property
+    def further_data(self) -> tuple[Matrix, ...]:
+        """The matrices of the exosystem."""
+        return self.exogenous
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:

@@ -15,6 +15,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import Builder, relation
+from symobs.system.conditions import joined
 from symobs.system.specification import read_gain
 from symobs.tasks.analysis.page_parts import formula_of_factored, in_blocks
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
@@ -182,9 +183,7 @@ class TrackingDesign(Result):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The conditions of the gains and of K_d."""
-        own = super().holds_where
-        known = {condition.expression for condition in own}
-        return (*own, *(condition for condition in self.loop.holds_where if condition.expression not in known))
+        return joined(super().holds_where, self.loop.holds_where)
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
