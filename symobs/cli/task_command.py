@@ -89,8 +89,7 @@ def _run_task(task: Any, options_given: dict[str, Any]) -> None:
     data |= {"language": page.document["language"]} if "language" in page.document else {}
 
     def work(report_progress: Progress) -> Outcome:
-        show_progress = progress_on_terminal(report_progress)
-        return solved(validate(data), page, show_progress)
+        return solved(validate(data), page, progress_on_terminal(report_progress))
 
     try:
         run_work(work, options_given["timeout"], options_given["memory"], task.name)

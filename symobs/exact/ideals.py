@@ -550,8 +550,7 @@ def _ideal(generators: tuple[Scalar, ...], field: Field | None = None) -> Ideal:
             return points
         if (shorter := shortened(generators)) and set(shorter) != set(generators):
             return _ideal(shorter, field)
-        message = f"the equations {'are too long to be decided' if has_few else 'have too many terms'}"
-        raise TooLarge(message)
+        raise TooLarge(f"the equations {'are too long to be decided' if has_few else 'have too many terms'}")
     return Ideal(field, fmpz_mpoly_vec(_reduced(list(basis), home), home), home)  # type: ignore[call-overload]
 
 
@@ -607,12 +606,10 @@ def triangular(equations: Sequence[Scalar], unknowns: Sequence[str]) -> tuple[Sc
         return (Scalar.of(1),)
     moved += [square.project_to_context(home) for square in field.relations]
     if sum(len(polynomial) for polynomial in moved) > TERMS:
-        message = "the equations have too many terms"
-        raise TooLarge(message)
+        raise TooLarge("the equations have too many terms")
     basis, complete = fmpz_mpoly_vec(moved, home).buchberger_naive(limits=TRIANGULAR_LIMITS)
     if not complete:
-        message = "the equations are too long to be eliminated"
-        raise TooLarge(message)
+        raise TooLarge("the equations are too long to be eliminated")
     reduced = basis.autoreduction(groebner=True)  # type: ignore[attr-defined]
     back = (field.normal(polynomial.project_to_context(field.context)) for polynomial in reduced)
     found = [Scalar(field, polynomial, field.one) for polynomial in back if polynomial]

@@ -156,8 +156,7 @@ def _with_constant(name: str, value: Any, symbols: Symbols) -> Symbols:
         message = f"more than {_MAX_CONSTANTS} constants are declared"
         raise InputError(message, where="constants", repair="write the numbers themselves")
     if name in symbols.signs:
-        message = f"{name} is declared as a symbol, too"
-        raise InputError(message, where=where, repair="keep one of the two declarations")
+        raise InputError(f"{name} is declared as a symbol, too", where=where, repair="keep one of the two declarations")
     if not isinstance(value, (str, int)) or isinstance(value, bool):
         raise InputError(f"a number is expected, but {came(value)} came", where=where, repair='write r = "sqrt(3)"')
     found = _counted(value, where) or parse_scalar(value, {**symbols.signs, **known}, where=where, functions=True)

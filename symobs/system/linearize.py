@@ -203,8 +203,7 @@ def _names(given: object, where: str) -> tuple[str, ...]:
     """Return the names in a text or a list."""
     listed = re.split(r"[,;\s]+", given.strip(" []")) if isinstance(given, str) else given
     if not isinstance(listed, Sequence):
-        message = "names are expected"
-        raise InputError(message, where=f"plant.{where}", repair=f'write {where} = "x1, x2"')
+        raise InputError("names are expected", where=f"plant.{where}", repair=f'write {where} = "x1, x2"')
     names = tuple(declared_name(str(name), f"plant.{where}") for name in listed if str(name))
     if not names and where == "states":
         raise InputError("no state is named", where="plant.states", repair='write states = "theta, omega"')

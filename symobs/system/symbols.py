@@ -63,8 +63,7 @@ class Symbols:
             details = entry if isinstance(entry, Mapping) else {"sign": entry}
             unknown = [str(k) for k in details if k not in {"sign", "latex"}]
             if unknown:
-                message = f"unknown key {unknown[0]!r}"
-                raise InputError(message, where=place, repair="use sign and latex")
+                raise InputError(f"unknown key {unknown[0]!r}", where=place, repair="use sign and latex")
             signs[name] = _sign(details.get("sign", "real"), place)
             if not isinstance(key, str):
                 objects[name] = key
@@ -143,8 +142,7 @@ def _require_parameter(symbol: Any, name: str, sign: str | None, place: str) -> 
 
 def _sign(entry: object, place: str) -> str:
     if entry not in SIGNS:
-        message = f"{str(entry)[:40]!r} is not a sign"
-        raise InputError(message, where=place, repair=f"write one of {', '.join(SIGNS)}")
+        raise InputError(f"{str(entry)[:40]!r} is not a sign", where=place, repair=f"write one of {', '.join(SIGNS)}")
     return str(entry)
 
 

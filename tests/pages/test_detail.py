@@ -59,15 +59,11 @@ def test_a_shorter_page_hides_nothing_that_conditions_an_answer(path: Path) -> N
         for kind in (Verified, CaseBlock, Caution):
             label = "label" if kind is CaseBlock else "inlines"
             kept = [getattr(block, label) for block in shorter if isinstance(block, kind)]
-            wanted = [getattr(b, label) for b in full if isinstance(b, kind) and not is_sources(b)]
+            wanted = [getattr(b, label) for b in full if isinstance(b, kind) and not isinstance(b, References)]
             assert [part for part in kept if part in wanted] == wanted
         lost = set(inequalities(full)) - set(inequalities(shorter))
         assert detail == "answer" or not lost
         assert {plain_relation(relation, "s") for relation in lost} <= {"epsilon > 0"}  # of a table that is not shown
-
-
-def is_sources(block: Block) -> bool:
-    return isinstance(block, References)
 
 
 @pytest.mark.parametrize("path", every_third, ids=lambda path: path.stem)

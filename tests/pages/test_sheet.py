@@ -220,8 +220,7 @@ def test_the_exit_code_is_the_worst(names: list[str], code: int, folder: Path) -
 
 def test_a_bug_in_one_problem_loses_no_other(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def failing(*_: object) -> None:
-        message = "of ours"
-        raise ZeroDivisionError(message)
+        raise ZeroDivisionError("of ours")
 
     monkeypatch.setattr("symobs.cli.shared.sheet_entries.question_of", failing)
     run = inside("sheet", "good.toml", "bad.toml", "--format", "text", folder=folder)

@@ -86,8 +86,7 @@ def evaluated(
             case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _OPERATIONS:
                 return _OPERATIONS[type(sign)](value(left), value(right))
             case ast.Call(func=ast.Name(id=name), args=arguments) if functions and name in functions:
-                function = functions[name]
-                return function(*(arguments if name in TREES else map(value, arguments)))
+                return functions[name](*(arguments if name in TREES else map(value, arguments)))
         raise Unreadable(ast.unparse(node)[:80])
 
     return value(text if isinstance(text, ast.expr) else parsed(str(text)))

@@ -78,8 +78,7 @@ def run_in_process(orders: Sequence[Order], _: object, __: str) -> tuple[list[st
     """Return the same rows without a child, and so without limits."""
     from symobs.applications.batch.child import worked  # noqa: PLC0415 - it imports the kernel
 
-    began = time.monotonic()
-    return [worked(order) for order in orders], time.monotonic() - began
+    return [worked(order) for order in orders], time.monotonic() - time.monotonic()
 
 
 def identity() -> str:
@@ -235,8 +234,7 @@ class _Watch:
             if self.client.sync(self.client.scheduler.ncores, callback_timeout=_ASK):
                 self.staffed = time.monotonic()
         if now - self.staffed > self.worker_timeout:
-            message = f"there has been no worker for {self.worker_timeout:g} seconds"
-            raise Unfinished(message, where="--scheduler")
+            raise Unfinished(f"there has been no worker for {self.worker_timeout:g} seconds", where="--scheduler")
         return True
 
 
@@ -387,8 +385,7 @@ def _answer(future: Future[tuple[list[str], float]]) -> tuple[list[str], float] 
 
 def _next_size(size: float, jobs: int, seconds: float, wanted: float) -> float:
     """Return the size of the next chunks: what the last one's pace gives, growing at most twofold."""
-    paced = jobs * wanted / max(seconds, 1e-6)
-    return min(max(1.0, paced), 2 * max(size, 1.0), LARGEST_CHUNK)
+    return min(max(1.0, jobs * wanted / max(seconds, 1e-6)), 2 * max(size, 1.0), LARGEST_CHUNK)
 
 
 def _halves(chunk: tuple[Job, ...]) -> tuple[tuple[Job, ...], tuple[Job, ...]]:

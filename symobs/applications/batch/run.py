@@ -264,8 +264,7 @@ def files_of(path: Path) -> list[Path]:
 def require_own_folder(out: Path, problems: Iterable[Path]) -> None:
     """Raise `UsageError` where results would lie among the problems, and be taken for problems the next time."""
     if any(each.is_dir() and out.exists() and each.samefile(out) for each in problems):
-        repair = "name a folder of its own"
-        raise UsageError(f"{out} is the folder of the problems", where="--out", repair=repair)
+        raise UsageError(f"{out} is the folder of the problems", where="--out", repair="name a folder of its own")
 
 
 def verified(folder: Path) -> int:

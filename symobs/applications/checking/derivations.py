@@ -353,8 +353,7 @@ def judge_milestone(problem: Problem, views: Sequence[ResultInConvention], miles
     if letter in OF_THE_PLANT and any(exists(view.result, letter) for view in views):
         return Line("", milestone.relation, "undecided")  # the plant's letter, and that of an answer
     right = {view.task: view.result for view in views if _is_unique(view.result)}
-    state = _Derivation(problem, views, {}, right)
-    return _judged(state, Step(milestone.relation, ""), Answer())
+    return _judged(_Derivation(problem, views, {}, right), Step(milestone.relation, ""), Answer())
 
 
 def _is_unique(result: Result) -> bool:

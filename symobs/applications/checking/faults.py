@@ -103,8 +103,7 @@ def explain_gain(
         kinds += [search.mirrored, search.pole_repeated, search.pole_dropped, search.not_subtracted, search.reversed]
         kinds += [search.dual_untransposed, search.other_matrix, search.not_transformed, search.wrong_direction]
         kinds += [search.entry_misread]
-    found = first_kind(kinds)
-    return replace(found, effect=search.effect)
+    return replace(first_kind(kinds), effect=search.effect)
 
 
 def _transposed(design: GainDesign, value: Matrix, letter: str) -> Iterator[Fault]:

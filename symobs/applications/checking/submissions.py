@@ -408,8 +408,7 @@ def report_of(problem: str, folder: str, submission: Submission, show: str) -> C
     """Return the report on a submission: an answer that cannot be read harms no other one, nor does a bug of ours."""
     checked = solved(problem, folder)
     try:
-        answer = answer_of(submission)
-        return checked.report(answer, show, None, submission.variant)
+        return checked.report(answer_of(submission), show, None, submission.variant)
     except SymobsError as error:
         return checked.without_answer(submission.student, submission.variant, "unreadable", str(error), show)
     except (ArithmeticError, AssertionError, AttributeError, LookupError, RuntimeError, TypeError, ValueError):

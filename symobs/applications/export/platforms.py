@@ -31,6 +31,5 @@ FOLDERS = ("prairielearn", "rexams", "ipynb")
 def export(platform: str, exercises: Sequence[ExerciseSet]) -> Files:
     """Return the files of questions for a platform; raises `ProblemErrors` with every part that it cannot hold."""
     if platform not in PLATFORMS:
-        message = f"{shown(platform, 40)!r} is no platform"
-        raise UsageError(message, where="--to", repair=f"take {', '.join(PLATFORMS)}")
+        raise UsageError(f"{shown(platform, 40)!r} is no platform", where="--to", repair=f"take {', '.join(PLATFORMS)}")
     return PLATFORMS[platform](exercises)

@@ -236,8 +236,7 @@ def _require_rational(
     for value in values:
         strange = sorted(name for name in value.names if name not in known)
         if strange:
-            message = f"its data hold {strange[0]}, and an exported grader computes with fractions alone"
-            raise _refused(part, message)
+            raise _refused(part, f"its data hold {strange[0]}, and an exported grader computes with fractions alone")
 
 
 # Problems as questions: read, solved, and with what decides about each part; many of one kind are variants of a
@@ -540,8 +539,7 @@ class _TexHtml:
                 if len(lines) > 1 or are_aligned:
                     body = rf"\begin{{{kind}}}{body}\end{{{kind}}}"
                 return f"<p>{self._between(self.display, body)}</p>"
-        message = f"a question contains no {type(block).__name__}"
-        raise TypeError(message)
+        raise TypeError(f"a question contains no {type(block).__name__}")
 
     def sentence(self, inlines: Inlines) -> str:
         """Return running text."""

@@ -49,8 +49,7 @@ def unit_system(draws: Draws, shape: Shape, name: str = "", poles: Poles | None 
     chosen = poles or _plant_poles(draws[f"{name}plant poles"], shape)
     chi = of_poles(chosen.pairs)
     numerator: Poly = draws[f"{name}numerator"].one_of(unit_numerators(chi, tuple(chosen.pairs)))
-    order = len(chi) - 1
-    return companion(chi), transposed(identity(order)[-1:]), (numerator,)
+    return companion(chi), transposed(identity(len(chi) - 1)[-1:]), (numerator,)
 
 
 def _plant_poles(draw: Draw, shape: Shape) -> Poles:

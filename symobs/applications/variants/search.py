@@ -139,8 +139,7 @@ class Variants:
     @property
     def manifest(self) -> dict[str, Any]:
         """What was made, as JSON: all data and answers, so that old variants depend on no program."""
-        listed = list(self)
-        return manifest(self._about, listed)
+        return manifest(self._about, list(self))
 
     @property
     def _about(self) -> About:

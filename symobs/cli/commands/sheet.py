@@ -18,13 +18,12 @@ from symobs.cli.shared.common import (
     EXIT_BUG,
     EXIT_NO,
     EXIT_UNDECIDED,
-    chosen_format,
     place_of,
     read_file,
     write_message,
 )
 from symobs.cli.shared.options import LIMITS, AFile, options
-from symobs.cli.shared.outcome import convention_of, page_of, runs_tex, typeset_slides
+from symobs.cli.shared.outcome import chosen_format, convention_of, page_of, runs_tex, typeset_slides
 from symobs.cli.shared.output import check_target, write
 from symobs.cli.shared.sheet_entries import Wanted, worked_out_all
 from symobs.formula.expression.source import shown

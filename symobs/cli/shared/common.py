@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from symobs.cli.shared.options import quoted
 from symobs.cli.shared.output import binary, make_folder, write_all
-from symobs.ground.errors import InputError, UsageError, reason_of
+from symobs.ground.errors import InputError, reason_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -77,23 +76,6 @@ def progress_on_terminal(report_progress: Progress) -> Progress:
     return shown
 
 
-def chosen_format(format_name: str | None, target: str | None, *, default: str = "latex") -> str:
-    """Return the output format: that of --format, else that of the suffix of the target, else the default."""
-    import symobs  # noqa: PLC0415 - the package itself stands above all floors
-    from symobs.cli.shared.task_index import format_suffixes  # noqa: PLC0415 - a run pays for one format
-    from symobs.tasks.result import format_named  # noqa: PLC0415
-
-    suffix = Path(target).suffix if target is not None else ""
-    if format_name is None and suffix:
-        known = format_suffixes(symobs.FORMAT_PACKAGE)
-        named = [name for name in known if known[name] == suffix]
-        if not named:
-            repair = f"give --format one of {', '.join(known)}"
-            raise UsageError(f"the suffix {quoted(suffix)} names no output format", where="-o", repair=repair)
-        format_name = "latex" if "latex" in named else named[0]
-    return str(format_named(format_name or default).name)
-
-
 def place_of(file: str) -> str:
     """Return the name of a file for messages."""
     from symobs.formula.expression.source import shown  # noqa: PLC0415 - needed for messages only
@@ -116,8 +98,7 @@ def read_file(file: str, kind: str = "a problem file") -> str:
         repair = f"give the path of {kind}, or - for standard input"
         raise InputError(reason_of(error), where=where, repair=repair) from None
     if len(raw) > MAX_BYTES:
-        message = f"the file is larger than {MAX_BYTES // 1024} kB"
-        raise InputError(message, where=where, repair=f"give {kind} alone")
+        raise InputError(f"the file is larger than {MAX_BYTES // 1024} kB", where=where, repair=f"give {kind} alone")
     try:
         return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

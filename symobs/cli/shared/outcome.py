@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.cli.shared.common import EXIT_NO, EXIT_UNDECIDED, chosen_format
+from symobs.cli.shared.options import quoted
 from symobs.cli.shared.output import check_target
 from symobs.ground.child_processes.budget import Budget
 from symobs.ground.dataclass import dataclass
@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from symobs.cli.shared.time_and_memory import Progress
+
+
+#: Exit codes of the contract.
+EXIT_NO, EXIT_UNDECIDED = 4, 5
 
 
 @dataclass(frozen=True)
@@ -124,6 +128,23 @@ def typeset_slides(content: str | bytes, format_name: str, target: str | None) -
     from symobs.pages.formats.pdf import compiled  # noqa: PLC0415 - only with -o slides.pdf
 
     return compiled(content)
+
+
+def chosen_format(format_name: str | None, target: str | None, *, default: str = "latex") -> str:
+    """Return the output format: that of --format, else that of the suffix of the target, else the default."""
+    import symobs  # noqa: PLC0415 - the package itself stands above all floors
+    from symobs.cli.shared.task_index import format_suffixes  # noqa: PLC0415 - a run pays for one format
+    from symobs.tasks.result import format_named  # noqa: PLC0415
+
+    suffix = Path(target).suffix if target is not None else ""
+    if format_name is None and suffix:
+        known = format_suffixes(symobs.FORMAT_PACKAGE)
+        named = [name for name in known if known[name] == suffix]
+        if not named:
+            repair = f"give --format one of {', '.join(known)}"
+            raise UsageError(f"the suffix {quoted(suffix)} names no output format", where="-o", repair=repair)
+        format_name = "latex" if "latex" in named else named[0]
+    return str(format_named(format_name or default).name)
 
 
 def check_targets(target: str | None, plot: str | None, bibliography: str | None = None) -> None:

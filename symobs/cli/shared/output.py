@@ -63,8 +63,7 @@ def copied(paths: Sequence[Path], folder: str) -> None:
     try:
         target.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        repair = "name a folder that can be written"
-        raise InputError(reason_of(error), where=_shown(folder), repair=repair) from None
+        raise InputError(reason_of(error), where=_shown(folder), repair="name a folder that can be written") from None
     write_all([(path.read_bytes(), str(target / path.name)) for path in paths])
 
 
@@ -170,8 +169,7 @@ def _explained(target: str | None) -> Iterator[None]:
         reason = reason_of(error)
         is_stream = target is None or target == "-"
         where, other = ("standard output", "name a file with -o") if is_stream else (_shown(target), _ELSEWHERE)
-        repair = _REPAIRS.get(getattr(error, "errno", 0) or 0, other)
-        raise InputError(reason, where=where, repair=repair) from None
+        raise InputError(reason, where=where, repair=_REPAIRS.get(getattr(error, "errno", 0) or 0, other)) from None
 
 
 def _shown(target: str | None) -> str:

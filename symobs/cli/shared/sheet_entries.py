@@ -245,8 +245,7 @@ def _part(document: Document, wanted: Wanted) -> Any:
         "language": wanted.language or document.language,
     }
     of_page |= {"templates": wanted.templates, "web": wanted.web}
-    configured = replace(document, convention=convention, **of_page)
-    return wanted.format.part(configured)
+    return wanted.format.part(replace(document, convention=convention, **of_page))
 
 
 def _failed(entry: SheetEntry, error: Exception, wanted: Wanted) -> tuple[SheetEntry, int, list[str]]:

@@ -310,8 +310,7 @@ def decimal_digits(value: Scalar) -> str:
     """Return the digits of a decimal, without its sign: 0.3676, 60.  Raises `ValueError` where it does not end."""
     count = decimal_places(value)
     if count is None:
-        message = f"{value} is not a decimal of at most {_MOST_PLACES} places"
-        raise ValueError(message)
+        raise ValueError(f"{value} is not a decimal of at most {_MOST_PLACES} places")
     digits = str(abs(int(value.fraction() * 10**count))).zfill(count + 1)
     return f"{digits[:-count]}.{digits[-count:]}" if count else digits
 
@@ -355,8 +354,7 @@ def _number(value: Scalar) -> Fraction | None:
     if value.is_constant:
         return value.fraction()
     functions = [f for name in value.names if (f := function_named(name)) is not None]
-    counted = any(f.square or f.kind == "CRootOf" for f in functions)
-    return near(value) if counted else None
+    return near(value) if any(f.square or f.kind == "CRootOf" for f in functions) else None
 
 
 def _rounded(numbers: Iterable[Fraction]) -> list[Fraction]:

@@ -260,8 +260,7 @@ def fibre(plane: Plane, line: CriticalLine) -> Fibre:
                 if line.x < root and (right_end is None or root < right_end):
                     right_end = root
     left = _places(plane, rational_between(left_end, line.x), separators)
-    right = _places(plane, rational_between(line.x, right_end), separators)
-    return Fibre(separators, left, right)
+    return Fibre(separators, left, _places(plane, rational_between(line.x, right_end), separators))
 
 
 def point_between(plane: Plane, line: CriticalLine, low: Fraction, high: Fraction) -> RealNumber | None:
@@ -328,8 +327,7 @@ def _separators(plane: Plane, x: RealNumber) -> tuple[Fraction, ...]:
 def _by_euclid(curves: Sequence[PlaneCurve], x: RealNumber) -> list[tuple[Fraction, Fraction]]:
     """Return intervals around the points on a line: the square-free part of the product is found over Q(α)."""
     if x.degree > LARGEST_DEGREE:
-        message = f"a critical line of degree {x.degree} on which several things happen"
-        raise TooLarge(message)
+        raise TooLarge(f"a critical line of degree {x.degree} on which several things happen")
     together: Upright = [fmpq_poly([1])]
     tower = _Tower(x)
     for curve in curves:

@@ -285,8 +285,7 @@ def nearest_double(value: Scalar) -> float:
     except OverflowError:
         message = f"{str(value)[:40]} is larger than any floating-point number"
         raise InputError(message, repair="write the data in other units") from None
-    message = f"{str(value)[:80]} is no number that can be rounded"
-    raise ValueError(message)
+    raise ValueError(f"{str(value)[:80]} is no number that can be rounded")
 
 
 def rounded_matrix(matrix: Matrix, rounding: Callable[[Scalar], float] = nearest_double) -> Matrix:

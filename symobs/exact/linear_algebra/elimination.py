@@ -39,8 +39,7 @@ def echelon(matrix: Matrix, relations: Ideal | Scalar | None = None) -> tuple[tu
         if not entry or relations is None:
             return not entry
         if len(entry) > TERMS:
-            message = "an entry is too long to be decided"
-            raise TooLarge(message)
+            raise TooLarge("an entry is too long to be decided")
         return Scalar(field, entry, field.one) in relations
 
     pivots, reduced = ring.echelon(rows, vanishes, field)
@@ -179,8 +178,7 @@ class PointEvaluator:
         self.names = tuple(names)
         strange = {name for value in values for name in value.names} - set(names)
         if strange:
-            message = f"{', '.join(sorted(strange))} is not among {', '.join(names)}"
-            raise ValueError(message)
+            raise ValueError(f"{', '.join(sorted(strange))} is not among {', '.join(names)}")
         self._parts = [(self._sliced(v.numerator_part, v), self._sliced(v.denominator_part, v)) for v in values]
         self._line: list[tuple[fmpq_poly | fmpq, fmpq_poly | fmpq]] = []
 

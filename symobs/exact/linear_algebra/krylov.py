@@ -125,8 +125,7 @@ class Krylov:
             return solution.scaled(scale).normal()
         below = self._integral_determinant
         if not below:
-            message = "not observable"
-            raise ZeroDivisionError(message)
+            raise ZeroDivisionError("not observable")
         column = tuple((cofactor * scale,) for cofactor in self._last_cofactors)
         return Matrix(self.field, column, below, (order, 1))
 

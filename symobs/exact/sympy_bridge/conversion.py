@@ -224,8 +224,7 @@ def complex_from_sympy(expression: Any, where: str, *, roots: bool = False) -> C
     if isinstance(expression, sympy.Poly):
         return complex_from_sympy(expression.as_expr(), where)
     if not isinstance(expression, sympy.Expr):
-        message = f"{type(expression).__name__} is not an exact expression"
-        raise InputError(message, where=where)
+        raise InputError(f"{type(expression).__name__} is not an exact expression", where=where)
     if expression.is_Integer or expression.is_Rational:
         return Complex.of(Fraction(int(expression.p), int(expression.q)))
     if expression.is_Float:
@@ -311,8 +310,7 @@ def scalar_from_sympy(expression: Any, where: str, *, roots: bool = False) -> Sc
     """Return the scalar of a real SymPy expression."""
     value = complex_from_sympy(expression, where, roots=roots)
     if not value.is_real:
-        message = f"{expression} is not real"
-        raise InputError(message, where=where)
+        raise InputError(f"{expression} is not real", where=where)
     return value.real
 
 

@@ -242,8 +242,7 @@ def twice_cosine(turns: Fraction) -> Scalar:
         return Scalar.of(1)
     if turns.denominator == 5:
         return (square_root(Scalar.of(5)) + (1 if turns.numerator == 1 else -1)) / 2
-    message = f"cos({turns}*pi) is not written with square roots here"
-    raise NotWritten(message)
+    raise NotWritten(f"cos({turns}*pi) is not written with square roots here")
 
 
 def butterworth_angles(count: int) -> tuple[Fraction, ...]:

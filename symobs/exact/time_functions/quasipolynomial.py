@@ -219,8 +219,7 @@ def quasi_of(value: Scalar, time: str = "t") -> Quasipolynomial:
         for power, coefficient in enumerate(reversed(c.coefficients(time))):
             found += _key(power, rate, key.wave, frequency, coefficient)
     if waves is None:
-        message = f"{value} is not a sum of exponentials, sines and cosines times powers of {time}"
-        raise ValueError(message)
+        raise ValueError(f"{value} is not a sum of exponentials, sines and cosines times powers of {time}")
     return Quasipolynomial.of(found)
 
 

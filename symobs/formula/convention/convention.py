@@ -306,8 +306,7 @@ def of_file(path: Path) -> Convention:
         table = tomllib.loads(text)
     except (OSError, ValueError, RecursionError) as error:
         message = f"no convention can be read: {reason_of(error)}"
-        unreadable = InputError(message, where=where, repair="write a small TOML file")
-        raise ProblemErrors((unreadable,)) from None
+        raise ProblemErrors((InputError(message, where=where, repair="write a small TOML file"),)) from None
     return read_convention(table, where)
 
 

@@ -354,8 +354,7 @@ class Evaluator:
             raise self.source.error(message, place, f"exponents are integers; {instead}")
         exponent = int(value.fraction())
         if abs(exponent) > MOST_EXPONENT:
-            message = f"the exponent is beyond {MOST_EXPONENT}"
-            raise self.source.error(message, place, _SMALLER, kind=BudgetExceeded)
+            raise self.source.error(f"the exponent is beyond {MOST_EXPONENT}", place, _SMALLER, kind=BudgetExceeded)
         return exponent
 
     def _combined(self, left: Number, place: int, right: Number, sign: str) -> Number:

@@ -299,8 +299,7 @@ def _refuse_blanks_for_commas(text: str, where: str) -> None:
     if len(text) > MOST_CHARACTERS or "[" in text or not any(_SIGNED_APART.fullmatch(part) for part in text.split(",")):
         return
     repair = f'write "{re.sub(r"(?<=[0-9.])[ ]+(?=[-+][0-9.])", ", ", text.strip())}", with commas between the numbers'
-    message = f'"{shown(text)}" may be several numbers or one sum'
-    raise ExpressionError(message, where=where, repair=repair)
+    raise ExpressionError(f'"{shown(text)}" may be several numbers or one sum', where=where, repair=repair)
 
 
 def _rows_of_text(text: str, scope: Scope, where: str) -> Sequence[Sequence[Number]]:

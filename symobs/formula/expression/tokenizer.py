@@ -80,17 +80,13 @@ def _term_backwards(tokens: Sequence[Token], end: int) -> Iterator[int]:
         kind = tokens[place].type
         if not depth:
             if kind in {*_OPENING_KINDS, "_COMMA", "_END", "_EQUAL"} or (
-                kind == "ADD" and _follows_operand(tokens, place)
+                kind == "ADD" and place > 0 and tokens[place - 1].type in OPERAND_ENDS
             ):
                 return
             yield place
         depth += (kind in _CLOSING_KINDS) - (kind in _OPENING_KINDS)
         if not depth and kind in _OPENING_KINDS:
             yield place
-
-
-def _follows_operand(tokens: Sequence[Token], place: int) -> bool:
-    return place > 0 and tokens[place - 1].type in OPERAND_ENDS
 
 
 MOST_NESTING = 100

@@ -43,8 +43,7 @@ def _collected(name: str) -> dict[str, Any]:
     for module in _MODULES:
         for key, value in dict(getattr(module, name, {})).items():
             if key in joined:
-                message = f"the phrase {key!r} is written twice"
-                raise ValueError(message)
+                raise ValueError(f"the phrase {key!r} is written twice")
             joined[key] = value
     return joined
 
@@ -72,8 +71,7 @@ def _listing(name: str) -> frozenset[str]:
 def _require_phrases(name: str, keys: Iterable[str]) -> None:
     for key in keys:
         if key not in PHRASES:
-            message = f"{name} speaks of {key!r}, which is no phrase"
-            raise ValueError(message)
+            raise ValueError(f"{name} speaks of {key!r}, which is no phrase")
 
 
 #: The properties that a phrase asserts: a step that says it must have them among its facts, and so have been checked.

@@ -472,13 +472,8 @@ def bibliography(keys: Iterable[str]) -> str:
     for key in sorted({key for key in keys if key in LITERATURE}):
         kind, of = LITERATURE[key]
         fields = {name: value.replace("–", "--").replace("&", r"\&") for name, value in of.items() if value}
-        fields["author"] = _authors(fields["author"])
+        fields["author"] = fields["author"].replace(", ", " and ")
         fields["title"] = f"{{{fields['title']}}}"
         lines = "".join(f"  {name} = {{{value}}},\n" for name, value in fields.items())
         entries.append(f"@{kind}{{{key},\n{lines}}}\n")
     return "\n".join(entries)
-
-
-def _authors(text: str) -> str:
-    """Return authors as BibTeX parts them."""
-    return text.replace(", ", " and ")

@@ -1,7 +1,7 @@
 """Formulas: the tree, its evaluation, and terms (a formula with its exact value)."""
 
 from symobs.formula.tree.arithmetic import Arithmetic, Signal, agree, differ, exact_meaning, is_rounded
-from symobs.formula.tree.evaluate import Environment, Exact, Modular, ModuloIdeal, evaluate
+from symobs.formula.tree.evaluate import Exact, Modular, ModuloIdeal, evaluate
 from symobs.formula.tree.nodes import (
     Apply,
     At,
@@ -39,6 +39,7 @@ from symobs.formula.tree.nodes import (
     with_children,
 )
 from symobs.formula.tree.sign_changes import SignReversal
+from symobs.formula.tree.term import Environment
 
 __all__ = [
     "Apply",

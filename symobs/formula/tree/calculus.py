@@ -27,8 +27,7 @@ def since_start(integrand: Formula, primitive: Formula, upper: Scalar) -> Integr
 def rate(value: Any, name: str, *, constant: bool) -> Any:
     """Return d/d(name) of a value, entry by entry."""
     if not constant and name not in symbols_in(exact(value)):
-        message = "a constant of a plant that does not vary has no derivative"
-        raise WrongKind(message)
+        raise WrongKind("a constant of a plant that does not vary has no derivative")
     return derivative(exact(value), name)
 
 
@@ -42,13 +41,11 @@ def check_primitive(integrand: Any, primitive: Any, name: str, arithmetic: Arith
     from symobs.formula.tree.arithmetic import agree  # noqa: PLC0415 - it stands on `evaluate`, which calls this
 
     if not agree(arithmetic.leaf(derivative(exact(primitive), name)), integrand, arithmetic):
-        message = "the primitive is another function's"
-        raise ArithmeticError(message)
+        raise ArithmeticError("the primitive is another function's")
 
 
 def exact(value: Any) -> Any:
     """Return an exact value; raises WrongKind for any other, such as a residue, which has no derivative."""
     if not isinstance(value, (Scalar, Matrix)):
-        message = f"{type(value).__name__} is not an exact value"
-        raise WrongKind(message)
+        raise WrongKind(f"{type(value).__name__} is not an exact value")
     return value

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from symobs.exact import EIGENVALUE, AlgebraicExtension, Ideal, Matrix, Scalar, rank
 from symobs.exact.core.generators import function_named
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Environment:
+class Meanings:
     """The meaning of the letters: values, dynamics, and relations.
 
     values      letter → exact scalar or matrix
@@ -81,12 +81,12 @@ class Environment:
         """Return the value of a letter."""
         return Scalar.symbol(self.variable) if name == "s" else self.values[name]
 
-    def extended_by(self, **updates: Mapping[str, Any]) -> Environment:
+    def extended_by(self, **updates: Mapping[str, Any]) -> Self:
         """Return an environment with entries added to the named mappings."""
         changed: dict[str, Any] = {key: {**getattr(self, key), **new} for key, new in updates.items()}
         return replace(self, **changed)
 
-    def with_relations(self, relations: tuple[Scalar, ...]) -> Environment:
+    def with_relations(self, relations: tuple[Scalar, ...]) -> Self:
         """Return an environment in which further polynomials are 0."""
         return replace(self, relations=(*self.relations, *relations)) if relations else self
 
@@ -94,7 +94,7 @@ class Environment:
 class Exact:
     """The exact kernel."""
 
-    def __init__(self, environment: Environment) -> None:
+    def __init__(self, environment: Meanings) -> None:
         """Substitute the values of named coefficients in every value.
 
         With roots of numbers all are put in at once: what is still a name would grow in a denominator without roots.
@@ -151,7 +151,7 @@ class Exact:
 class Modular:
     """Residues at a random point modulo a prime: integers for scalars, FLINT's `nmod_mat` for matrices."""
 
-    def __init__(self, environment: Environment, point: Point) -> None:
+    def __init__(self, environment: Meanings, point: Point) -> None:
         """Give each named coefficient the residue of its value."""
         self.point = point
         self.prime = point.prime
@@ -209,7 +209,7 @@ _MINUS_ONE = Scalar.of(-1)
 _OF_MATRICES = {"det", "adj", "rank"}
 
 
-def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic) -> Any:
+def evaluate(formula: Formula, environment: Meanings, arithmetic: Arithmetic) -> Any:
     """Return the value of a formula: a scalar, a matrix or a `Signal` of the arithmetic."""
     match formula:
         case Letter(name):
@@ -244,8 +244,7 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             if function.endswith("_at"):
                 return _polynomial_at(environment.values[function.removesuffix("_at")], value, environment, arithmetic)
             if function not in _OF_MATRICES:
-                message = f"{function} is no function of a matrix"
-                raise ValueError(message)
+                raise ValueError(f"{function} is no function of a matrix")
             return arithmetic.apply(function, value)
         case Block(rows):
             return _block([[evaluate(entry, environment, arithmetic) for entry in row] for row in rows], arithmetic)
@@ -265,21 +264,20 @@ def evaluate(formula: Formula, environment: Environment, arithmetic: Arithmetic)
             return arithmetic.leaf(calculus.at(whole, name, upper) - calculus.at(whole, name, lower))
 
 
-def _without_base(environment: Environment) -> Exact:
+def _without_base(environment: Meanings) -> Exact:
     """Return the kernel with named coefficients, but no common base of functions, which is another one at an instant."""
     named = {name: value for name, value in environment.coefficients.items() if function_named(name) is None}
     return Exact(replace(environment, coefficients=named))
 
 
-def _signal(name: str, environment: Environment, arithmetic: Arithmetic) -> Signal:
+def _signal(name: str, environment: Meanings, arithmetic: Arithmetic) -> Signal:
     formula = environment.signals[name]
     if formula is None:
         size = environment.sizes[name]
         return Signal(size, {name: arithmetic.leaf(Matrix.identity(size))})
     value = evaluate(formula, environment, arithmetic)
     if not isinstance(value, Signal):
-        message = f"{name} is defined as {type(value).__name__}, not as a signal"
-        raise WrongKind(message)
+        raise WrongKind(f"{name} is defined as {type(value).__name__}, not as a signal")
     return value
 
 
@@ -293,12 +291,11 @@ def _power(base: Any, exponent: int, arithmetic: Arithmetic) -> Any:
     return power
 
 
-def _polynomial_at(polynomial: object, value: Any, environment: Environment, arithmetic: Arithmetic) -> Any:
+def _polynomial_at(polynomial: object, value: Any, environment: Meanings, arithmetic: Arithmetic) -> Any:
     """Return the polynomial of the variable at a square matrix or a scalar, by Horner's rule."""
     polynomial = polynomial[0, 0] if isinstance(polynomial, Matrix) else polynomial
     if not isinstance(polynomial, Scalar):
-        message = f"{type(polynomial).__name__} is not a polynomial"
-        raise WrongKind(message)
+        raise WrongKind(f"{type(polynomial).__name__} is not a polynomial")
     shape = arithmetic.shape(value)
     if shape is None:
         number = arithmetic.leaf(Scalar.of(0))
@@ -329,7 +326,7 @@ def _block(rows: list[list[Any]], arithmetic: Arithmetic) -> Any:
     return Signal(sum(part.size for part in parts), stacked)
 
 
-def _derivative(signal: Signal, environment: Environment, arithmetic: Arithmetic) -> Signal:
+def _derivative(signal: Signal, environment: Meanings, arithmetic: Arithmetic) -> Signal:
     total: Signal | None = None
     for name, coefficient in signal.coefficients.items():
         rate = evaluate(environment.dynamics[name], environment, arithmetic)
@@ -354,7 +351,7 @@ class ModuloIdeal(Exact):
     polynomial vanishes, which leaves a field; on other ideals minors and kernels say the same.
     """
 
-    def __init__(self, environment: Environment) -> None:
+    def __init__(self, environment: Meanings) -> None:
         """Keep the relations."""
         super().__init__(environment)
         self.relations = environment.relations
@@ -386,8 +383,7 @@ class ModuloIdeal(Exact):
         )  # what is irreducible over Q may not be so beside the roots of the values
         factors = generators[0].within(field).factors()[1] if len(generators) == 1 else ()
         if len(factors) != 1 or factors[0][1] != 1:
-            message = "a rank on a stratum is shown by minors and kernels"
-            raise NotShown(message)
+            raise NotShown("a rank on a stratum is shown by minors and kernels")
         roots = {field.names[index] for index, _ in field.roots}
         name = max(factors[0][0].names - roots, key=lambda name: (name == EIGENVALUE, name))
         return Scalar.of(len(AlgebraicExtension(generators[0], name).echelon(value)[0]))
@@ -403,5 +399,4 @@ class ModuloIdeal(Exact):
     def _meaningful(self, value: Scalar | Matrix) -> None:
         below = value.common_denominator()
         if not below.is_constant and below in self.ideal:
-            message = f"{below} vanishes here"
-            raise ZeroDivisionError(message)
+            raise ZeroDivisionError(f"{below} vanishes here")

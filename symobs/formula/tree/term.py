@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from symobs.exact import Matrix, Scalar
-from symobs.formula.tree.evaluate import Environment, Exact, evaluate
+from symobs.formula.tree.evaluate import Exact, Meanings, evaluate
 from symobs.formula.tree.nodes import (
     Apply,
     At,
@@ -114,6 +114,15 @@ class Term:
         return self._with(Literal(self.value))
 
 
+@dataclass(frozen=True)
+class Environment(Meanings):
+    """The meanings of letters, with the term of each: `e["A"] - e["L"] @ e["C"]`."""
+
+    def __getitem__(self, name: str) -> Term:
+        """Return the term of an established letter."""
+        return Term(Letter(name), self)
+
+
 def _terms(formula: Formula) -> tuple[Formula, ...]:
     return formula.terms if isinstance(formula, Sum) else (formula,)
 
@@ -141,4 +150,4 @@ def identity(order: int, environment: Environment) -> Term:
 
 def letter(name: str, environment: Environment) -> Term:
     """Return the term of an established letter."""
-    return Term(Letter(name), environment)
+    return environment[name]

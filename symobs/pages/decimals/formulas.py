@@ -215,7 +215,7 @@ class InDecimals:
                 rest = None if inner[1] is None else inner[1] if exponent == 1 else Power(inner[1], exponent)
                 return inner[0] ** exponent, rest
             case Sum():
-                return (_ONE, self._of_terms(formula)) if self._is_value(formula) else None
+                return (_ONE, Sum(tuple(map(self._term, formula.terms)))) if self._is_value(formula) else None
             case Literal(Scalar() as value) if not any(is_time_function(name) for name in value.names):
                 if value.is_constant or is_number(value):
                     return value, None
@@ -232,9 +232,6 @@ class InDecimals:
             and isinstance(formula, (Literal, Sum, Product, Quotient, Negative, Power))
             and all(map(self._is_value, children(formula)))
         )
-
-    def _of_terms(self, formula: Sum) -> Formula:
-        return Sum(tuple(map(self._term, formula.terms)))
 
     def _term(self, formula: Formula) -> Formula:
         """Return a term; a number that is subtracted stays so: 9 - (-20.6), 3.6 - 0."""

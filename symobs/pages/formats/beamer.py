@@ -113,18 +113,13 @@ def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Heading, tuple[Block, ...
             body.append(block)
         elif not title.inlines or not body:
             title = block
-        elif _is_a_sentence(body):
+        elif len(body) == 1 and isinstance(body[0], Paragraph | Verified):
             body.append(block)
         else:
             yield title, tuple(body)
             title, body = block, []
     if body:
         yield title, tuple(body)
-
-
-def _is_a_sentence(body: Sequence[Block]) -> bool:
-    """Return whether a slide would have nothing but one paragraph."""
-    return len(body) == 1 and isinstance(body[0], Paragraph | Verified)
 
 
 def _is_no_slide(before: Block, last: Block) -> bool:

@@ -226,8 +226,7 @@ def wrapped(text: str, width: int, *, first: str = "") -> str:
             lines[-1] += f" {word}"
         else:
             lines.append(word)
-    broken = f"\n{' ' * len(first)}".join(lines)
-    return first + broken.replace(_NO_BREAK, " ")
+    return first + f"\n{' ' * len(first)}".join(lines).replace(_NO_BREAK, " ")
 
 
 def underlined(text: str, mark: str, width: int) -> str:

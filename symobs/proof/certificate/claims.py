@@ -259,8 +259,7 @@ def as_scalar(value: Any) -> Scalar:
     if isinstance(value, Matrix) and value.shape == (1, 1):
         (value,) = value.entries
     if not isinstance(value, Scalar):
-        message = f"{type(value).__name__} is not a scalar"
-        raise WrongKind(message)
+        raise WrongKind(f"{type(value).__name__} is not a scalar")
     return value
 
 

@@ -194,8 +194,7 @@ class Pointwise(ModuloIdeal):
         if not self._has_minor(value, len(columns), (rows, columns)) or not (
             (sent_to_zero and self._has_minor(kernel, len(vectors))) or self._has_none(value, len(columns) + 1)
         ):
-            message = "the rank is not seen to be the same everywhere"
-            raise NotShown(message)
+            raise NotShown("the rank is not seen to be the same everywhere")
         return Scalar.of(len(columns))
 
     def _has_minor(

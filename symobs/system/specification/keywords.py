@@ -225,8 +225,7 @@ def desired_polynomial(
         repair = f'give {names[0]} = "{", ".join(str(-k) for k in range(1, degree + 1))}" or {article} {names[1]}'
         raise InputError(message, where=first, repair=repair)
     if poles is not None and polynomial is not None:
-        message = f"both {names[0]} and {names[1]} are given"
-        raise InputError(message, where=first, repair="keep one of them")
+        raise InputError(f"both {names[0]} and {names[1]} are given", where=first, repair="keep one of them")
     if is_pattern(poles):
         found = _from_pattern(poles, plant, degree, first)
     elif poles is not None:
@@ -443,8 +442,7 @@ def read_quantity(value: object, plant: StateSpace, name: str, where: str = "", 
         message = f"{name} contains {plant.variable}, the variable of the polynomials"
         raise InputError(message, where=where, repair="write another name")
     if sign_of(quantity, plant.symbols.signs) in {"zero", "negative", "nonpositive"}:
-        message = f"{name} is {quantity}, which is not positive"
-        raise InputError(message, where=where, repair=f"give a positive {name}")
+        raise InputError(f"{name} is {quantity}, which is not positive", where=where, repair=f"give a positive {name}")
     return quantity
 
 

@@ -75,8 +75,7 @@ def named_parts(value: Any, where: str) -> dict[str, Any]:
     parts = _parts_of_text(value, where) if isinstance(value, str) else dict(value)
     unknown = [str(name)[:40] for name in parts if name not in KEYS]
     if unknown:
-        message = f"poles have no {unknown[0]!r}"
-        raise InputError(message, where=where, repair=f"known names are {', '.join(KEYS)}")
+        raise InputError(f"poles have no {unknown[0]!r}", where=where, repair=f"known names are {', '.join(KEYS)}")
     asked = {name for name in parts if name != OTHERS}
     if asked not in [set(pair) for pair in PAIRS] and not (len(asked) == 1 and asked <= {*FILTERS}):
         message = f"{' and '.join(sorted(asked)) or 'nothing'} given, which does not say where the poles are"

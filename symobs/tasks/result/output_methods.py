@@ -214,8 +214,7 @@ class OutputMethods:
             if name in vars(kind):
                 return vars(kind)[name].__get__(self)  # its own error, not that there is no such name
         if name.startswith("_") or name not in self.fields:
-            message = f"{type(self).__name__} has no attribute {name!r}"
-            raise AttributeError(message)
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
         if name not in self._objects:
             self._objects[name] = to_sympy(self.fields[name], self.plant.symbols.objects)
         return self._objects[name]
@@ -298,8 +297,7 @@ def digits_asked(digits: object = None, *, exact: bool = False, where: str = "di
     if digits is None:
         return 0 if exact else None
     if exact:
-        message = "digits and exact numbers are both asked for"
-        raise UsageError(message, where=where, repair="keep one of them")
+        raise UsageError("digits and exact numbers are both asked for", where=where, repair="keep one of them")
     if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
         message = f"{shown(str(digits), 40)!r} is not a number of significant digits"
         raise UsageError(message, where=where, repair=f"write a whole number from 1 to {MOST_DIGITS}, for example 5")

@@ -81,8 +81,7 @@ class Result(TaskTraits):
         try:
             object.__setattr__(self, "certificates", check_all(self.claims(), self.plant.relations))
         except BEYOND_LIMITS as error:
-            message = f"{self.task} is undecided, its answer cannot be checked: {error}"
-            raise Undecided(message) from error
+            raise Undecided(f"{self.task} is undecided, its answer cannot be checked: {error}") from error
         except UNREADABLE as error:
             message = f"the answer of {self.task} is no answer: {error}"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs") from error
@@ -102,8 +101,7 @@ class Result(TaskTraits):
         return hash((type(self), self.plant, self.method, self.page_method, tuple(self.answer)))
 
     def __bool__(self) -> NoReturn:
-        message = f"a result is neither true nor false; ask for its verdict: {self.task}(...).verdict == 'yes'"
-        raise TypeError(message)
+        raise TypeError(f"a result is neither true nor false; ask for its verdict: {self.task}(...).verdict == 'yes'")
 
     # -- what a subclass says ----------------------------------------------------------------------------------------
 

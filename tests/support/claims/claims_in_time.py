@@ -188,8 +188,7 @@ def nothing_explains(result: Any, world: World, data: tuple[Matrix, Matrix | Non
         motion(world, result, [[Fraction(int(i == j))] for i in range(order)], None, start) for j in range(order)
     ]
     left = [[column[k][i][0] for column in columns] for k in range(_COUNT) for i in range(len(columns[0][0]))]
-    whole = [row + wanted for row, wanted in zip(left, right, strict=True)]
-    return rank_of(whole) > rank_of(left)
+    return rank_of([row + wanted for row, wanted in zip(left, right, strict=True)]) > rank_of(left)
 
 
 def _times(rows: Rows, factor: int) -> Rows:

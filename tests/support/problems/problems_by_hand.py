@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 
 def is_zero(expression: Any) -> bool:
     """Whether a rational expression is 0."""
-    numerator = sympy.together(expression).as_numer_denom()[0]
-    return bool(sympy.expand(numerator) == 0)
+    return bool(sympy.expand(sympy.together(expression).as_numer_denom()[0]) == 0)
 
 
 def observability_matrix(A: Any, C: Any) -> Any:

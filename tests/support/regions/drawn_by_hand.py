@@ -156,8 +156,7 @@ QUINTIC = s**5 + 3 * s**4 + (5 + h1) * s**3 + (6 + h2) * s**2 + (4 + h1 - h2) * 
 
 @cache
 def hyperbola() -> RegionPicture:
-    curves = {h1 * h2 - 1: equation(h1 * h2, 1)}
-    return region(HYPERBOLA, curves, ((-1, 5), (-1, 5)))
+    return region(HYPERBOLA, {h1 * h2 - 1: equation(h1 * h2, 1)}, ((-1, 5), (-1, 5)))
 
 
 @cache

@@ -100,8 +100,7 @@ def _polynomial(value: Polynomial, variables: Mapping[str, Any]) -> Any:
 def same_relations(problem: Problem, relations: Sequence[str], truth: Formula, limit: float = 20) -> Proof:
     """Hold a conjunction against a set."""
     translation = Translation()
-    ours = conjunction(translation, relations)
-    return _same(problem, translation, ours, truth, limit)
+    return _same(problem, translation, conjunction(translation, relations), truth, limit)
 
 
 def same_intervals(problem: Problem, answer: Answer, truth: Formula, limit: float = 20) -> Proof:

@@ -255,8 +255,7 @@ def _holds_in_time(part: Result, answer: Mapping[str, Any], world: World) -> boo
     except AssertionError:
         return False
     if "rank" in answer and not isinstance(answer["rank"], int):
-        dual = answer.get("of") == "controllability"
-        return _is_rank(*at.pair(dual=dual), answer["rank"], world)
+        return _is_rank(*at.pair(dual=answer.get("of") == "controllability"), answer["rank"], world)
     return True
 
 

@@ -272,8 +272,7 @@ def test_z3_is_bounded_by_its_own_count_and_by_no_clock(monkeypatch: pytest.Monk
     pytest.importorskip("z3")
 
     def stopped() -> float:
-        message = "a clock was read"
-        raise AssertionError(message)
+        raise AssertionError("a clock was read")
 
     for clock in ("monotonic", "perf_counter", "time"):
         monkeypatch.setattr(f"time.{clock}", stopped)

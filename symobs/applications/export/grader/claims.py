@@ -211,8 +211,7 @@ def closes_the_loop(part: Part, F: Ratio) -> bool:
     if len(above) > len(below) or len(below) - 1 > part["order"]:
         return False
     P, Q = transfer(*(part[name] for name in "ABCD"))
-    loop = divided_by(times(chi, plus(times(Q, below), times(P, above))), Q)
-    return loop == (part["phi"], ONE)
+    return divided_by(times(chi, plus(times(Q, below), times(P, above))), Q) == (part["phi"], ONE)
 
 
 def judge_compensator(
@@ -333,15 +332,13 @@ def _part(
     if part["kind"] == "word":
         word = WORDS.get(texts[0][0].strip().strip('"').lower())
         if word is None:
-            message = "write yes, no or conditional"
-            raise UnreadableError(message)
+            raise UnreadableError("write yes, no or conditional")
         verdict, slip, reason = "right" if word == part["right"] else "wrong", "", ""
     else:
         variable = {part["variable"]: (poly([0, 1]), ONE)} if part["function"] else {}
         value = [[read(cell, {**point, **variable}) for cell in row] for row in texts]
         if any(len(row) != len(value[0]) for row in value):
-            message = "the rows have different lengths"
-            raise UnreadableError(message)
+            raise UnreadableError("the rows have different lengths")
         if part["kind"] == "gain":
             gain = [[number(entry) for entry in row] for row in value]
             gain = negative(gain) if part["turned"] else gain

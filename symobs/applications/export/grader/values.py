@@ -80,8 +80,7 @@ def divided(p: Poly, q: Poly) -> tuple[Poly, Poly]:
 def divided_by(above: Poly, below: Poly = ONE) -> Ratio:
     """Return a rational function in lowest terms, its denominator monic."""
     if not below:
-        message = "a division by zero"
-        raise UnreadableError(message)
+        raise UnreadableError("a division by zero")
     p, q = above, below
     while q:
         p, q = q, divided(p, q)[1]
@@ -95,23 +94,20 @@ def divided_by(above: Poly, below: Poly = ONE) -> Ratio:
 def read(text: str, names: Mapping[str, Ratio]) -> Ratio:
     """Return the value of a text; `names` holds the values of its letters."""
     if len(text) > MOST_CHARACTERS:
-        message = "this is too long"
-        raise UnreadableError(message)
+        raise UnreadableError("this is too long")
     tokens: list[tuple[str, str]] = []
     text, place = text.translate(TYPED).strip().removesuffix(";"), 0
     while place < len(text):
         found = _TOKEN.match(text, place)
         if found is None:
-            message = f"{text[place]!r} cannot stand in a value"
-            raise UnreadableError(message)
+            raise UnreadableError(f"{text[place]!r} cannot stand in a value")
         if found.lastgroup != "space":
             tokens.append((str(found.lastgroup), found.group().replace("**", "^")))
         place = found.end()
     reader = _Reader(tokens, names)
     value = reader.sum(0)
     if reader.place < len(tokens):
-        message = f"{tokens[reader.place][1]!r} stands in a wrong place"
-        raise UnreadableError(message)
+        raise UnreadableError(f"{tokens[reader.place][1]!r} stands in a wrong place")
     return value
 
 
@@ -152,11 +148,9 @@ class _Reader:
             if not sign and not (kind in {"number", "name"} or text == "("):
                 return value
             if not sign and kind == before == "number":
-                message = "a number follows a number"
-                raise UnreadableError(message)
+                raise UnreadableError("a number follows a number")
             if not sign and last == "/":
-                message = "a product without its sign follows a division: write the sign, or parentheses"
-                raise UnreadableError(message)
+                raise UnreadableError("a product without its sign follows a division: write the sign, or parentheses")
             last = sign or "*"
             (a, b), (c, d) = value, self.signed(depth)
             value = bounded(times(a, d), times(b, c)) if last == "/" else bounded(times(a, c), times(b, d))
@@ -175,8 +169,7 @@ class _Reader:
         """Return a power with an integer exponent."""
         number = exponent[0][0] if exponent[0] else Fraction(0)
         if len(exponent[0]) > 1 or len(exponent[1]) > 1 or number.denominator > 1 or abs(number) > MOST_EXPONENT:
-            message = f"an exponent is an integer up to {MOST_EXPONENT}"
-            raise UnreadableError(message)
+            raise UnreadableError(f"an exponent is an integer up to {MOST_EXPONENT}")
         above, below = value if number >= 0 else divided_by(value[1], value[0])
         found = (ONE, ONE)
         for _ in range(abs(int(number))):
@@ -188,13 +181,11 @@ class _Reader:
         kind, text = self.next()
         self.place += 1
         if depth > MOST_NESTING:
-            message = "brackets are nested too deeply"
-            raise UnreadableError(message)
+            raise UnreadableError("brackets are nested too deeply")
         if text == "(":
             value = self.sum(depth + 1)
             if not self.takes(")"):
-                message = "a parenthesis is not closed"
-                raise UnreadableError(message)
+                raise UnreadableError("a parenthesis is not closed")
             return value
         if kind == "number":
             return bounded(poly([Fraction(text)]), ONE)
@@ -202,8 +193,7 @@ class _Reader:
             return self.names[text]
         if kind == "name":
             known = ", ".join(sorted(self.names))
-            message = f"{text} is not a letter of this question" + (f" ({known})" if known else "")
-            raise UnreadableError(message)
+            raise UnreadableError(f"{text} is not a letter of this question" + (f" ({known})" if known else ""))
         message = f"{text!r} stands in a wrong place" if text else "a value is missing"
         raise UnreadableError(message)
 
@@ -213,8 +203,7 @@ def bounded(above: Poly, below: Poly) -> Ratio:
     if max(len(above), len(below)) > MOST_DEGREE or any(
         max(abs(c.numerator).bit_length(), c.denominator.bit_length()) > MOST_BITS for c in (*above, *below)
     ):
-        message = "this is too large"
-        raise UnreadableError(message)
+        raise UnreadableError("this is too large")
     return divided_by(above, below) if len(below) > 1 or not below else (scaled(above, 1 / below[0]), ONE)
 
 
@@ -222,8 +211,7 @@ def number(value: Ratio) -> Fraction:
     """Return a value without the variable as a number."""
     above, below = value
     if len(above) > 1 or len(below) > 1:
-        message = "a number is expected here"
-        raise UnreadableError(message)
+        raise UnreadableError("a number is expected here")
     return above[0] if above else Fraction(0)
 
 

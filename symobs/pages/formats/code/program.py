@@ -113,8 +113,7 @@ def _period(document: Document, plant: StateSpace, *, in_continuous_time: bool) 
         raise UsageError(f"{document.hold[:40]!r} is no way to sample", where="--hold", repair=repair)
     if plant.is_discrete:
         if document.period is not None:
-            message = "the plant is in discrete time already"
-            raise UsageError(message, where="--period", repair="leave the period out")
+            raise UsageError("the plant is in discrete time already", where="--period", repair="leave the period out")
         return None
     if document.period is None:
         if in_continuous_time:

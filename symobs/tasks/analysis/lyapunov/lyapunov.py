@@ -21,7 +21,6 @@ from symobs.exact import (
     solve_or_refute,
 )
 from symobs.formula.tree import Environment, HoldsExactlyWhere
-from symobs.formula.tree.term import letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, Undecided
 from symobs.proof.certificate.claims import Claim
@@ -103,27 +102,25 @@ class LyapunovSolution(Result):
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         values = given_values | {"A": self.plant.matrices.A, "Q": self.weight, "image": _image(self.plant)}
         e = Environment(variable=self.plant.variable, values=values, signs=self.plant.symbols.signs)
-        A, Q = letter("A", e), letter("Q", e)
+        A, Q = e["A"], e["Q"]
         zero = Matrix.zeros(*self.weight.shape)
         yield Claim(relation(Q, Q.T), e, "Q = Q.T")
-        yield Claim(
-            relation(letter("image", e).apply("det"), letter("determinant", e)), e, "determinant of the image of A"
-        )
+        yield Claim(relation(e["image"].apply("det"), e["determinant"]), e, "determinant of the image of A")
         if is_unique:
-            yield Claim(relation(letter("determinant", e), "!==", 0), e, "the determinant is not 0")
+            yield Claim(relation(e["determinant"], "!==", 0), e, "the determinant is not 0")
         if answer["X"] is not None:
-            X = letter("X", e)
+            X = e["X"]
             moved = A @ X @ A.T - X if discrete else A @ X + X @ A.T
             yield Claim(relation(moved, zero), e, "A*X*A.T - X = 0" if discrete else "A*X + X*A.T = 0")
             yield Claim(relation(X, X.T), e, "X = X.T")
             yield Claim(relation(trace(self.weight, answer["X"]), "!==", 0), e, "trace of Q*X is not 0")
             return
-        P = letter("P", e)
+        P = e["P"]
         said = "A.T*P*A - P = -Q" if discrete else "A.T*P + P*A = -Q"
         yield Claim(relation(_moved(A, P, discrete=discrete), -Q), e, said)
         yield Claim(relation(P, P.T), e, "P = P.T")
         if answer["N"] is not None:
-            N = letter("N", e)
+            N = e["N"]
             yield Claim(relation(_moved(A, N, discrete=discrete), zero), e, said.replace("P", "N").replace("-Q", "0"))
             yield Claim(relation(N, N.T), e, "N = N.T")
             yield Claim(relation(N, "!==", zero), e, "N is not 0")

@@ -28,7 +28,7 @@ from symobs.exact import (
     stable_roots,
 )
 from symobs.formula.tree import Conjunction, Environment, Evaluated, Literal, Relation, Roots
-from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.formula.tree.term import Term, block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim, verify
 from symobs.proof.derivation import CaseStep, Conclude, Equal, Step
@@ -275,8 +275,8 @@ class ModeResult(Result):
         A, _ = self.test.pair(self.plant)
         order, X = self.plant.order, self.test.answer["restricted"]
         e = Environment(variable=self.plant.variable, values={"A": A, "X": X, "chi": self.answer["polynomial"]})
-        chi, s = letter("chi", e), letter("s", e)
-        yield Claim(relation((s @ identity(order, e) - letter("A", e)).apply("det"), chi), e)
+        chi, s = e["chi"], e["s"]
+        yield Claim(relation((s @ identity(order, e) - e["A"]).apply("det"), chi), e)
         form = Factored(Scalar.of(1), tuple((part.factor, part.power) for part in self.spectrum))
         yield Claim(relation(chi, Term(formula_of_factored(form), e)), e, "chi = product of the factors")
         counts = len(self.answer["ranks"]), len(self.answer["constancy"])
@@ -285,11 +285,7 @@ class ModeResult(Result):
             yield from self._rank_claims(part, found, e)
             if where is not None:
                 yield from constancy_claims(where, X, part.factor, order - found, self.plant)
-        fixed = (
-            (s @ identity(X.shape[0], e) - letter("X", e)).apply("det")
-            if X.shape[0]
-            else Term(Literal(Scalar.of(1)), e)
-        )
+        fixed = (s @ identity(X.shape[0], e) - e["X"]).apply("det") if X.shape[0] else Term(Literal(Scalar.of(1)), e)
         yield Claim(relation(fixed, self.answer["fixed_polynomial"]), e, "det(s*I - X) = fixed_polynomial")
 
     def _rank_claims(self, part: Eigenvalues, found: int, e: Environment) -> Iterator[Claim]:
@@ -302,7 +298,7 @@ class ModeResult(Result):
             if not hidden:
                 yield Claim(relation(found, order), inner, f"rank = n where {where}, since ker O = 0")
                 return
-            value, size = letter("X", inner).apply("phi_at"), hidden - degree * (order - found)
+            value, size = inner["X"].apply("phi_at"), hidden - degree * (order - found)
             if self.plant.is_stratum or not self.plant.relations:
                 yield Claim(relation(value.apply("rank"), size), inner, f"rank q(X) gives the rank where {where}")
             else:  # relations between functions of the parameters: not at each of their points, but in general
@@ -315,9 +311,9 @@ class ModeResult(Result):
             signs=self.plant.symbols.signs,
             relations=(part.relation,) if len(part.roots) > 1 else (),
         )
-        M = letter("M", inner)
+        M = inner["M"]
         C = self.test.pair(self.plant)[1]
-        pencil = [[letter("A", inner) - identity(order, inner) * part.value], [Term(Literal(C), inner)]]
+        pencil = [[inner["A"] - identity(order, inner) * part.value], [Term(Literal(C), inner)]]
         yield Claim(relation(M, block(pencil)), inner, f"M = [A - lambda*I; C] where {where}")
         yield Claim(
             relation(found, len(rows), len(columns)), inner, f"the minor has the order of the rank where {where}"

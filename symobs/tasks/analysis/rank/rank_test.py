@@ -22,7 +22,7 @@ from symobs.exact import (
     unit_rows,
 )
 from symobs.formula.tree import Environment, Literal
-from symobs.formula.tree.term import Term, letter
+from symobs.formula.tree.term import Term
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Certificate, Claim, check_all
@@ -120,8 +120,7 @@ def _deciding_minors(seen: Matrix, e: Environment) -> list[Scalar] | None:
             return minors
         if len(minors) < most:
             return None
-    message = f"more than {_MINORS[-1]} minors decide whether these measurements are enough"
-    raise TooLarge(message)
+    raise TooLarge(f"more than {_MINORS[-1]} minors decide whether these measurements are enough")
 
 
 def seen_through(chosen: tuple[int, ...], N: Matrix, X: Matrix) -> Matrix:
@@ -196,16 +195,16 @@ def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | No
     """Yield structure, kernel and rank from above, invariance; the kernel's claims hold `here`, on a stratum."""
     O, N, X = found["matrix"], found["kernel"], found["restricted"]
     order = O.shape[1]
-    yield Claim(relation(letter("O", e), letter("upper", e)), e, "the blocks are C, C*A, ..., C*A**(n - 1)")
+    yield Claim(relation(e["O"], e["upper"]), e, "the blocks are C, C*A, ..., C*A**(n - 1)")
     witnesses = len(found["rows"]), len(found["columns"])
     yield Claim(relation(found["rank"], *witnesses), e, "the minor has the order of the rank")
     beside = N.shape[1], len(found["free"]), *X.shape
     yield Claim(relation(order - found["rank"], *beside), e, "the kernel has the dimension n - rank")
     if N.shape[1]:
         e, count = here or e, range(N.shape[1])
-        yield Claim(relation(letter("O", e) @ letter("N", e), Matrix.zeros(O.shape[0], len(count))), e, "M*N = 0")
+        yield Claim(relation(e["O"] @ e["N"], Matrix.zeros(O.shape[0], len(count))), e, "M*N = 0")
         yield Claim(relation(determinant_term(N.select(found["free"], count), e), "!==", 0), e, "rank N = n - rank M")
-        yield Claim(relation(letter("A", e) @ letter("N", e), letter("N", e) @ letter("X", e)), e, "A*N = N*X")
+        yield Claim(relation(e["A"] @ e["N"], e["N"] @ e["X"]), e, "A*N = N*X")
 
 
 def rank_losses(found: Mapping[str, Any], signs: Mapping[str, str]) -> tuple[Scalar, ...]:

@@ -25,7 +25,7 @@ from symobs.exact import (
 )
 from symobs.exact.linear_algebra.modal_matrix import modal_matrix
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import block, identity, letter
+from symobs.formula.tree.term import block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Claim
@@ -101,7 +101,7 @@ class CanonicalForm(Result):
         m, answer, n = self.plant.matrices, self.answer, self.plant.order
         chi = answer["polynomial"]
         e = Environment(variable=self.plant.variable, values={"A": m.A, "chi": chi})
-        yield Claim(relation((letter("s", e) @ identity(n, e) - letter("A", e)).apply("det"), letter("chi", e)), e)
+        yield Claim(relation((e["s"] @ identity(n, e) - e["A"]).apply("det"), e["chi"]), e)
         if answer["T"] is None:
             rank = self.test.answer["rank"] if self.test is not None else n
             yield Claim(relation(rank, "<", n), e, "the pair does not have full rank")
@@ -113,31 +113,31 @@ class CanonicalForm(Result):
         values |= {"C": m.C, "C_bar": answer["C"]} if m.has_output else {}
         values |= {"D": m.D, "D_bar": answer["D"]} if m.has_input and m.has_output else {}
         e = e.extended_by(values=values)
-        T, S = letter("T", e), letter("S", e)
+        T, S = e["T"], e["S"]
         yield Claim(relation(T @ S, identity(n, e)), e)
-        yield Claim(relation(letter("A_bar", e), T @ letter("A", e) @ S), e)
-        for left, right in (("B_bar", T @ letter("B", e)), ("C_bar", letter("C", e) @ S), ("D_bar", letter("D", e))):
+        yield Claim(relation(e["A_bar"], T @ e["A"] @ S), e)
+        for left, right in (("B_bar", T @ e["B"]), ("C_bar", e["C"] @ S), ("D_bar", e["D"])):
             if left in values:
-                yield Claim(relation(letter(left, e), right), e)
+                yield Claim(relation(e[left], right), e)
         yield from self._form(e)
 
     def _form(self, e: Environment) -> Iterator[Claim]:
-        n, A_bar = self.plant.order, letter("A_bar", e)
+        n, A_bar = self.plant.order, e["A_bar"]
         wanted = companion(self.answer["polynomial"].coefficients(self.plant.variable)[1:])
         last = Matrix.unit(n, n - 1)
         if self.kind == "controllable":
             yield Claim(relation(A_bar, wanted), e, "A_bar has the coefficients of chi in its last row")
-            yield Claim(relation(letter("B_bar", e), last), e, "B_bar is the last unit vector")
+            yield Claim(relation(e["B_bar"], last), e, "B_bar is the last unit vector")
         elif self.kind == "observable":
             yield Claim(relation(A_bar, wanted.T), e, "A_bar has the coefficients of chi in its last column")
-            yield Claim(relation(letter("C_bar", e), last.T), e, "C_bar is the last unit row")
+            yield Claim(relation(e["C_bar"], last.T), e, "C_bar is the last unit row")
         else:
             blocks = modal_matrix(self.answer["blocks"], self.plant.variable)
             yield Claim(relation(A_bar, blocks), e, "A_bar consists of the blocks of the factors of chi")
             product = Scalar.of(1)
             for factor, length in self.answer["blocks"]:
                 product = product * factor**length
-            yield Claim(relation(letter("chi", e), product), e, "chi = product of the polynomials of the blocks")
+            yield Claim(relation(e["chi"], product), e, "chi = product of the polynomials of the blocks")
 
     @property
     def existence(self) -> tuple[Scalar, ...]:

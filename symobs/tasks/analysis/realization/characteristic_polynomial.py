@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Factored, Scalar, factored, roots_of
 from symobs.formula.tree import Environment, Roots
-from symobs.formula.tree.term import Term, identity, letter
+from symobs.formula.tree.term import Term, identity
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
@@ -34,11 +34,11 @@ class CharacteristicPolynomial(Result):
         """Yield det(sI − A) = χ(s) = product of the factors."""
         values = {"A": self.plant.matrices.A, "chi": self.answer["polynomial"]}
         e = Environment(variable=self.plant.variable, values=values)
-        pencil = letter("s", e) @ identity(self.plant.order, e) - letter("A", e)
+        pencil = e["s"] @ identity(self.plant.order, e) - e["A"]
         form: Factored = self.answer["factors"]
         product = Term(formula_of_factored(form), e)
-        yield Claim(relation(pencil.apply("det"), letter("chi", e)), e)
-        yield Claim(relation(letter("chi", e), product), e, "chi = product of the factors")
+        yield Claim(relation(pencil.apply("det"), e["chi"]), e)
+        yield Claim(relation(e["chi"], product), e, "chi = product of the factors")
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Matrix, Scalar
 from symobs.formula.tree import Environment, Literal
-from symobs.formula.tree.term import Term, block, letter
+from symobs.formula.tree.term import Term, block
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Claim
@@ -56,16 +56,16 @@ class Dual(Result):
         values |= {"C": m.C, "B_dual": answer["B"]} if m.has_output else {}
         values |= {"D": m.D, "D_dual": answer["D"]} if m.has_input and m.has_output else {}
         e = Environment(variable=self.plant.variable, values=values)
-        image = letter("A", e).T if self.sign > 0 else -letter("A", e).T
-        yield Claim(relation(letter("A_dual", e), image), e)
+        image = e["A"].T if self.sign > 0 else -e["A"].T
+        yield Claim(relation(e["A_dual"], image), e)
         for left, right in (("B_dual", "C"), ("C_dual", "B"), ("D_dual", "D")):
             if left in values:
-                yield Claim(relation(letter(left, e), letter(right, e).T), e)
+                yield Claim(relation(e[left], e[right].T), e)
         for kind, test in self.tests.items():
             inner = Environment(variable=e.variable, values={"M": test.answer["matrix"], "N": self._dual_matrix(kind)})
             signs = self._signs(self.plant.outputs if kind == "observability" else self.plant.inputs)
             yield Claim(
-                relation(letter("N", inner), letter("M", inner).T @ Term(Literal(signs), inner)),
+                relation(inner["N"], inner["M"].T @ Term(Literal(signs), inner)),
                 inner,
                 f"dual of {kind}",
             )

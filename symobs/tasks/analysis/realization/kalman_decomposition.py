@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Matrix, Scalar, modulo
 from symobs.formula.tree import Environment, Literal
-from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.formula.tree.term import Term, block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
@@ -94,15 +94,15 @@ class Decomposition(Result):
         names = {"A_bar": "A", "B_bar": "B", "C_bar": "C", "D_bar": "D", "T": "T", "S": "inverse"}
         values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D} | {name: answer[key] for name, key in names.items()}
         e = Environment(variable=self.plant.variable, values=values)
-        T, S = letter("T", e), letter("S", e)
+        T, S = e["T"], e["S"]
         yield Claim(relation(T @ S, identity(n, e)), e)
-        yield Claim(relation(letter("A_bar", e), T @ letter("A", e) @ S), e)
+        yield Claim(relation(e["A_bar"], T @ e["A"] @ S), e)
         if m.has_input:
-            yield Claim(relation(letter("B_bar", e), T @ letter("B", e)), e)
+            yield Claim(relation(e["B_bar"], T @ e["B"]), e)
         if m.has_output:
-            yield Claim(relation(letter("C_bar", e), letter("C", e) @ S), e)
+            yield Claim(relation(e["C_bar"], e["C"] @ S), e)
         if self._is_whole:
-            yield Claim(relation(letter("D_bar", e), letter("D", e)), e)
+            yield Claim(relation(e["D_bar"], e["D"]), e)
         yield Claim(relation(Scalar.of(sum(self.dimensions)), n), e, "the parts make up the whole")
         yield Claim(relation(answer["minimal_order"], self.dimensions[0]), e, "the order is that of the first part")
         for to, out in ZEROS:
@@ -147,14 +147,14 @@ class Decomposition(Result):
         A1 = self.answer["A"].select(first, first)
         B1, C1 = self.answer["B"].select(first, inputs), self.answer["C"].select(outputs, first)
         e = e.extended_by(values={"P": self.answer["transfer_function"], "A_co": A1, "B_co": B1, "C_co": C1})
-        s, P = letter("s", e), letter("P", e)
-        whole = (s @ identity(self.plant.order, e) - letter("A", e)).inverse
-        yield Claim(relation(P, letter("C", e) @ whole @ letter("B", e) + letter("D", e)), e)
+        s, P = e["s"], e["P"]
+        whole = (s @ identity(self.plant.order, e) - e["A"]).inverse
+        yield Claim(relation(P, e["C"] @ whole @ e["B"] + e["D"]), e)
         if first:
-            own = (s @ identity(len(first), e) - letter("A_co", e)).inverse
-            yield Claim(relation(P, letter("C_co", e) @ own @ letter("B_co", e) + letter("D", e)), e)
+            own = (s @ identity(len(first), e) - e["A_co"]).inverse
+            yield Claim(relation(P, e["C_co"] @ own @ e["B_co"] + e["D"]), e)
         else:
-            yield Claim(relation(P, letter("D", e)), e)
+            yield Claim(relation(P, e["D"]), e)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:

@@ -21,7 +21,7 @@ from symobs.exact import (
 from symobs.exact.core.generators import NotWritten
 from symobs.exact.linear_algebra.transfer_function import minors
 from symobs.formula.tree import Environment, Evaluated, Literal, Quotient, Roots
-from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.formula.tree.term import Term, block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
@@ -53,11 +53,11 @@ class TransferFunction(Result):
         m = self.plant.matrices
         values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D, "P": self.answer["transfer_function"]}
         e = Environment(variable=self.plant.variable, values=values)
-        resolvent = (letter("s", e) @ identity(self.plant.order, e) - letter("A", e)).inverse
-        response = letter("C", e) @ resolvent @ letter("B", e)
+        resolvent = (e["s"] @ identity(self.plant.order, e) - e["A"]).inverse
+        response = e["C"] @ resolvent @ e["B"]
         if m.has_feedthrough:
-            response = response + letter("D", e)
-        yield Claim(relation(letter("P", e), response), e)
+            response = response + e["D"]
+        yield Claim(relation(e["P"], response), e)
         if self.plant.equations and self.order:
             yield self._smallest(e)
 
@@ -162,8 +162,7 @@ class TransferFunction(Result):
         """Return the function on a stratum; raises `NotWritten` where more has a root in common all over it."""
         found, ideal = resolvent(plant), plant.ideal
         if ideal is not None and any(all(value in ideal for value in system) for system in found.decisive):
-            message = "poles or zeros are others all over the stratum"
-            raise NotWritten(message)
+            raise NotWritten("poles or zeros are others all over the stratum")
         return found
 
     def _is_as_ever(self, case: Case) -> bool:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs.exact import Scalar
 from symobs.exact.core.generators import function_named
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import identity, letter
+from symobs.formula.tree.term import identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.proof.certificate.claims import Claim, Statement
@@ -430,15 +430,15 @@ class StabilityRegion(Result):
         values |= {"K": question.K, "B": m.B} if question.K is not None else {}
         values |= {"L": question.L, "C": m.C} if question.L is not None else {}
         e = Environment(variable=plant.variable, values=values)
-        pencil = letter("s", e) @ identity(plant.order, e) - letter("A", e)
-        moved = [pencil + letter("B", e) @ letter("K", e)] if question.K is not None else []
-        moved += [pencil + letter("L", e) @ letter("C", e)] if question.L is not None else []
+        pencil = e["s"] @ identity(plant.order, e) - e["A"]
+        moved = [pencil + e["B"] @ e["K"]] if question.K is not None else []
+        moved += [pencil + e["L"] @ e["C"]] if question.L is not None else []
         product = (moved or [pencil])[0].apply("det")
         for other in moved[1:]:
             product = product @ other.apply("det")
         if plant.polynomial is not None:
-            return Claim(relation(letter("chi", e), plant.polynomial), e)
-        return Claim(relation(product, letter("chi", e)), e)
+            return Claim(relation(e["chi"], plant.polynomial), e)
+        return Claim(relation(product, e["chi"]), e)
 
     # -- what follows ------------------------------------------------------------------------------------------------
 

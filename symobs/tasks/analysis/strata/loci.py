@@ -110,8 +110,7 @@ class Locus:
         Raises `TooLarge` where that is too long.
         """
         if len(self.equations) > 1 and sum(equation.size**2 for equation in self.equations) > _SQUARED:
-            message = "the squares of the equations are too long"
-            raise TooLarge(message)
+            raise TooLarge("the squares of the equations are too long")
         return distance_from(self.equations)
 
 

@@ -17,7 +17,7 @@ from symobs.exact.core.generators import substitute
 from symobs.exact.time_functions.antiderivative import collected
 from symobs.exact.time_functions.quasipolynomial import to_quasipolynomial
 from symobs.formula.tree import Environment, Integral, Literal
-from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.formula.tree.term import Term, block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded
 from symobs.proof.certificate.claims import Claim
@@ -136,12 +136,12 @@ class TimeVaryingObservability(Result):
         named, zero = dependences([*meant.values(), *self.closed_forms], self.asked_for)
         e = Environment(TIME, meant, signs=signs, coefficients=named, relations=zero)
         yield Claim(relation(len(answer["stack"]), order), e, "the stack has n blocks")
-        yield Claim(relation(letter("N_0", e), letter("C", e)), e)
+        yield Claim(relation(e["N_0"], e["C"]), e)
         for k in range(order - 1):
-            row = letter(f"N_{k}", e)
-            yield Claim(relation(letter(f"N_{k + 1}", e), row @ letter("A", e) + row.derivative), e)
-        stacked = block([[letter(f"N_{k}", e)] for k in range(order)])
-        yield Claim(relation(letter("O", e), stacked), e, "O = [N_0; N_1; ...]")
+            row = e[f"N_{k}"]
+            yield Claim(relation(e[f"N_{k + 1}"], row @ e["A"] + row.derivative), e)
+        stacked = block([[e[f"N_{k}"]] for k in range(order)])
+        yield Claim(relation(e["O"], stacked), e, "O = [N_0; N_1; ...]")
         yield from self._rank_claims(e)
         if answer["transition_matrix"] is not None:
             yield from self._transition_claims(e)
@@ -164,7 +164,7 @@ class TimeVaryingObservability(Result):
                 instant = minor.at(TIME, answer["point"])
                 yield Claim(relation(instant, "!=", 0), e, f"it is not 0 at t = {answer['point']}")
         if hidden:
-            A, C, states, X = (letter(name, e) for name in ("A", "C", "V", "X"))
+            A, C, states, X = (e[name] for name in ("A", "C", "V", "X"))
             yield Claim(relation(C @ states, Matrix.zeros(self.plant.outputs, hidden)), e, "C*V = 0")
             yield Claim(relation(A @ states - states.derivative, states @ X), e, "A*V - V' = V*X")
             yield Claim(
@@ -182,50 +182,50 @@ class TimeVaryingObservability(Result):
 
     def _transition_claims(self, e: Environment) -> Iterator[Claim]:
         answer, order, asked = self.answer, self.plant.order, self.asked_for
-        Phi = letter("Phi", e)
-        yield Claim(relation(Phi.derivative, letter("A", e) @ Phi), e, "d/dt Phi(t, t0) = A*Phi(t, t0)")
+        Phi = e["Phi"]
+        yield Claim(relation(Phi.derivative, e["A"] @ Phi), e, "d/dt Phi(t, t0) = A*Phi(t, t0)")
         yield Claim(relation(Phi.at(TIME, Scalar.symbol(START)), identity(order, e)), e, "Phi(t0, t0) = I")
-        seen = letter("C", e) @ Phi.at(START, asked.start)
+        seen = e["C"] @ Phi.at(START, asked.start)
         hidden = order - answer["rank"]
         if answer["kernel"] is None and _has_value(answer["transition_matrix"], asked.start):
             reject("the states that are never seen are missing")
         if answer["kernel"] is not None:
             yield Claim(relation(answer["kernel"].shape[1], hidden), e, "there are n - rank vectors v")
         if answer["kernel"] is not None and hidden:
-            v = letter("v", e)
+            v = e["v"]
             yield Claim(relation(v.derivative, Matrix.zeros(order, hidden)), e, "v does not depend on t")
             yield Claim(relation(seen @ v, Matrix.zeros(self.plant.outputs, hidden)), e, "C*Phi*v = 0")
             yield Claim(relation((v.T @ v).apply("det"), "!==", 0), e, "the vectors v are independent")
         if answer["gramian_in_time"] is not None:
-            G = letter("G", e)
+            G = e["G"]
             yield Claim(relation(G.derivative, seen.T @ seen), e, "G' = Phi.T*C.T*C*Phi")
             yield Claim(relation(G.at(TIME, asked.start), Matrix.zeros(order, order)), e, "G(start) = 0")
             yield Claim(relation(answer["gramian"], G.at(TIME, asked.end)), e, "the Gramian is G(end)")
 
     def _state_claims(self, e: Environment) -> Iterator[Claim]:
         m, start = self.plant.matrices, self.asked_for.start
-        f, rate = letter("f", e), letter("A", e) @ letter("f", e)
+        f, rate = e["f"], e["A"] @ e["f"]
         if "u" in e.values:
-            rate = rate + letter("B", e) @ letter("u", e)
+            rate = rate + e["B"] @ e["u"]
         yield Claim(relation(f.derivative, rate), e, "f' = A*f + B*u")
         yield Claim(relation(f.at(TIME, start), Matrix.zeros(self.plant.order, 1)), e, "f(start) = 0")
         if self.answer["x0"] is None:
             yield from self._refusal_claims(e)
         else:
-            state = letter("Phi", e).at(START, start) @ letter("x_0", e) + f
-            seen = letter("C", e) @ state
-            seen = seen + letter("D", e) @ letter("u", e) if "u" in e.values and m.has_feedthrough else seen
-            yield Claim(relation(letter("x_0", e).derivative, Matrix.zeros(self.plant.order, 1)), e, "x0 is constant")
-            yield Claim(relation(seen, letter("y", e)), e, "C*(Phi*x0 + f) + D*u = y")
+            state = e["Phi"].at(START, start) @ e["x_0"] + f
+            seen = e["C"] @ state
+            seen = seen + e["D"] @ e["u"] if "u" in e.values and m.has_feedthrough else seen
+            yield Claim(relation(e["x_0"].derivative, Matrix.zeros(self.plant.order, 1)), e, "x0 is constant")
+            yield Claim(relation(seen, e["y"]), e, "C*(Phi*x0 + f) + D*u = y")
 
     def _refusal_claims(self, e: Environment) -> Iterator[Claim]:
         """Yield W x = ∫ Φᵀ Cᵀ ξ, which has one solution, for a state x whose output is another one."""
         answer, asked, W = self.answer, self.asked_for, self.answer["gramian"]
         if answer["candidate"] is None:
             return
-        seen = letter("C", e) @ letter("Phi", e).at(START, asked.start)
-        xi = letter("y", e) - letter("C", e) @ letter("f", e)
-        xi = xi - letter("D", e) @ letter("u", e) if "u" in e.values else xi
+        seen = e["C"] @ e["Phi"].at(START, asked.start)
+        xi = e["y"] - e["C"] @ e["f"]
+        xi = xi - e["D"] @ e["u"] if "u" in e.values else xi
         state = Term(Literal(answer["candidate"]), e)
         limits = (TIME, asked.start, asked.end)
         whole = Term(Integral((seen.T @ xi).formula, Literal(answer["moment"]), *limits), e)

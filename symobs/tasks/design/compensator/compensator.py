@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 from symobs.exact import Matrix, Scalar, controller, modulo, transfer
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import identity, letter
+from symobs.formula.tree.term import identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, together
 from symobs.proof.certificate.claims import Claim
@@ -49,8 +49,7 @@ class CompensatorDesign(OutputFeedback):
     def design(cls, plant: StateSpace, asked: Sequence[Asked], name: str) -> Self:
         """Return the compensator for these polynomials, or with these gains."""
         feedback = half_of(StateFeedbackDesign, plant, asked[0])
-        estimator = half_of(ObserverDesign, plant, asked[1])
-        return cls.of(feedback, estimator, name)
+        return cls.of(feedback, half_of(ObserverDesign, plant, asked[1]), name)
 
     @classmethod
     def of(cls, feedback: StateFeedbackDesign, estimator: ObserverDesign, method_name: str) -> Self:
@@ -78,8 +77,8 @@ class CompensatorDesign(OutputFeedback):
         e = self._environment()
         yield from self.certified(e)
         if self.exists:
-            A, B, C, D, K, L, F = (letter(name, e) for name in "ABCDKLF")
-            moved = letter("s", e) @ identity(self.plant.order, e) - A + B @ K + L @ C
+            A, B, C, D, K, L, F = (e[name] for name in "ABCDKLF")
+            moved = e["s"] @ identity(self.plant.order, e) - A + B @ K + L @ C
             if self.plant.matrices.has_feedthrough:
                 moved = moved - L @ D @ K
             yield Claim(relation(F, K @ moved.inverse @ L), e)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 from symobs.exact import Matrix, Scalar, transfer
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import block, identity, letter
+from symobs.formula.tree.term import block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.ground.on_demand import OnDemand
@@ -80,14 +80,14 @@ class MinimalOrderCompensator(OutputFeedback):
             return
         direct, rest = split(self.answer["K"], self.estimator)
         e = e.extended_by(values={"N": direct, "K_2": rest})
-        K, M, N, K_2, D, F = (letter(name, e) for name in ("K", "M_z", "N", "K_2", "D", "F"))
+        K, M, N, K_2, D, F = (e[name] for name in ("K", "M_z", "N", "K_2", "D", "F"))
         yield Claim(relation(K @ M, block([[N, K_2]])), e, "K*M = [N, K_2]")
         one = identity(self.plant.inputs, e)
         if not self.exists:
             yield Claim(relation((one - N @ D).apply("det"), 0), e, "det(I - N*D) = 0")
             return
-        F_z, G, H = (letter(name, e) for name in ("F_z", "G_z", "H_z"))
-        resolvent = (letter("s", e) @ identity(self.plant.order - self.plant.outputs, e) - F_z).inverse
+        F_z, G, H = (e[name] for name in ("F_z", "G_z", "H_z"))
+        resolvent = (e["s"] @ identity(self.plant.order - self.plant.outputs, e) - F_z).inverse
         loop = one + K_2 @ resolvent @ G
         if self.plant.matrices.has_feedthrough:
             loop = loop - N @ D

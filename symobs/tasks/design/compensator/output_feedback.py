@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 from symobs.exact import Factored, Matrix, Scalar, factored, pole_and_zero_polynomial, resultant, roots_of, transfer
 from symobs.exact.linear_algebra.transfer_function import Realisation, closed, transfer_matrix
 from symobs.formula.tree import Environment, HoldsExactlyWhere, Literal, Quotient, Roots
-from symobs.formula.tree.term import Term, identity, letter
+from symobs.formula.tree.term import Term, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.ground.on_demand import OnDemand
@@ -298,7 +298,7 @@ class OutputFeedback(Result):
         whole = Matrix.of([[entry / characteristic for entry in row] for row in product.rows])
         values = {"P": self.plant_function, "F": self.answer["F"], "G_cl": whole}
         e = Environment(variable=variable, values=values)
-        P, F, G = (letter(name, e) for name in ("P", "F", "G_cl"))
+        P, F, G = (e[name] for name in ("P", "F", "G_cl"))
         check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e.with_relations(self.plant.relations)))
         return tuple(tuple(factored(entry, variable, monic=False) for entry in row) for row in whole.rows)
 
@@ -313,8 +313,8 @@ class OutputFeedback(Result):
         kept = value.denominator.degree(self.plant.variable) == polynomial.value.degree(self.plant.variable)
         form = over(numerator, own, polynomial) if kept else factored(value, self.plant.variable, monic=False)
         e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
-        P_, F_, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
-        check(Claim(relation(letter("G_cl", e), P_ / (one + P_ @ F_)), e.with_relations(self.plant.relations)))
+        P_, F_, one = e["P"], e["F"], Term(relation(1, 1).members[0], e)
+        check(Claim(relation(e["G_cl"], P_ / (one + P_ @ F_)), e.with_relations(self.plant.relations)))
         return form
 
     @cached_property
@@ -326,8 +326,8 @@ class OutputFeedback(Result):
         value = numerator * own / polynomial.value
         kept = value.denominator.degree(variable) == polynomial.value.degree(variable)
         e = Environment(variable=variable, values={"P": self.plant_function, "F": self.answer["F"], "G_r": value})
-        P, F, one = letter("P", e), letter("F", e), Term(relation(1, 1).members[0], e)
-        check(Claim(relation(letter("G_r", e), P @ F / (one + P @ F)), e.with_relations(self.plant.relations)))
+        P, F, one = e["P"], e["F"], Term(relation(1, 1).members[0], e)
+        check(Claim(relation(e["G_r"], P @ F / (one + P @ F)), e.with_relations(self.plant.relations)))
         return cancelled(numerator, own, polynomial, variable) if kept else factored(value, variable, monic=False)
 
     @cached_property

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.exact import Matrix, modulo, rank, roots_of
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment, Literal, Roots
-from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.formula.tree.term import Term, block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Certificate, Claim
@@ -101,8 +101,7 @@ class DisturbanceObserver(Result):
     def _whole(self, gains: Mapping[str, Matrix]) -> Matrix:
         first, second = (gains.get(name, self.answer[name]) for name in self.gains)
         if first is None or second is None:
-            message = "there are no such gains"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("there are no such gains", repair="please report this: it is a bug of symobs")
         return Matrix.block([[first], [second]])
 
     def claims(self) -> Iterator[Claim]:
@@ -117,15 +116,15 @@ class DisturbanceObserver(Result):
         e = Environment(variable=plant.variable, values=values | gains)
         whole = block(extended(e, plant, self.exosystem))
         yield Claim(relation(whole, self.inner.plant.matrices.A), e, "the inner observer is one for A_hat")
-        yield Claim(relation(letter("phi", e), self.desired.polynomial), e, "the polynomial is the one asked for")
+        yield Claim(relation(e["phi"], self.desired.polynomial), e, "the polynomial is the one asked for")
         if L_x is not None:
-            both = block([[letter("L_x", e)], [letter("L_w", e)]])
+            both = block([[e["L_x"]], [e["L_w"]]])
             yield Claim(relation(both, self.inner.answer["L"]), e, "[L_x; L_w] = L")
             order = plant.order + self.exosystem.order
-            seen = block([[letter("L_x", e) @ letter("C", e)], [letter("L_w", e) @ letter("C", e)]])
+            seen = block([[e["L_x"] @ e["C"]], [e["L_w"] @ e["C"]]])
             wide = Matrix.block([[Matrix.identity(plant.order), Matrix.zeros(plant.order, self.exosystem.order)]])
-            pencil = letter("s", e) @ identity(order, e) - whole + seen @ Term(Literal(wide), e)
-            yield Claim(relation(pencil.apply("det"), letter("phi", e)), e, "det(s*I - A_hat + L*C_hat) = phi")
+            pencil = e["s"] @ identity(order, e) - whole + seen @ Term(Literal(wide), e)
+            yield Claim(relation(pencil.apply("det"), e["phi"]), e, "det(s*I - A_hat + L*C_hat) = phi")
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:
@@ -217,9 +216,9 @@ def with_exosystem(plant: StateSpace, exosystem: Exosystem) -> StateSpace:
 
 def extended(e: Environment, plant: StateSpace, exosystem: Exosystem) -> list[list[Term]]:
     """Return the blocks of [A EV; 0 S], of [A E; 0 S] where d = w and V has no letter."""
-    A, E, S = (letter(name, e) for name in ("A", "E_d", "S_w"))
+    A, E, S = (e[name] for name in ("A", "E_d", "S_w"))
     return [
-        [A, E @ letter("V_w", e) if e.defines("V_w") else E],
+        [A, E @ e["V_w"] if e.defines("V_w") else E],
         [Term(Literal(Matrix.zeros(exosystem.order, plant.order)), e), S],
     ]
 

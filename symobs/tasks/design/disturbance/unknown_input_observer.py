@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.exact import Matrix, Scalar, independent_rows, kernel, modulo, roots_of
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment, Roots
-from symobs.formula.tree.term import block, identity, letter
+from symobs.formula.tree.term import block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Certificate, Claim
@@ -164,14 +164,14 @@ class UnknownInputObserver(Result):
         values = letters_of(plant) | {"E_d": self.disturbance_input, "phi": answer["polynomial"]}
         known = {name: value for name, value in answer.items() if value is not None}
         e = Environment(variable=plant.variable, values=values | known)
-        A, C, E = (letter(name, e) for name in ("A", "C", "E_d"))
-        yield Claim(relation(letter("phi", e), self.desired.polynomial), e, "the polynomial is the one asked for")
+        A, C, E = (e[name] for name in ("A", "C", "E_d"))
+        yield Claim(relation(e["phi"], self.desired.polynomial), e, "the polynomial is the one asked for")
         if inner is None:
-            w = letter("w", e)
+            w = e["w"]
             yield Claim(relation(C @ E @ w, Matrix.zeros(plant.outputs, 1)), e, "C*E*w = 0")
             yield Claim(relation(E @ w, "!==", Matrix.zeros(plant.order, 1)), e, "E*w is not 0")
             return
-        H, T = letter("H", e), letter("T", e)
+        H, T = e["H"], e["T"]
         yield Claim(
             relation((H @ C - identity(plant.order, e)) @ E, Matrix.zeros(*self.disturbance_input.shape)),
             e,
@@ -180,19 +180,19 @@ class UnknownInputObserver(Result):
         yield Claim(relation(T, identity(plant.order, e) - H @ C), e, "T = I - H*C")
         yield Claim(relation(T @ A, inner.plant.matrices.A), e, "the inner gain is one for T*A")
         yield Claim(relation(C, inner.plant.matrices.C), e, "the inner gain is one for C")
-        yield Claim(relation(letter("phi", e), inner.answer["polynomial"]), e, "the inner gain is one for phi(s)")
+        yield Claim(relation(e["phi"], inner.answer["polynomial"]), e, "the inner gain is one for phi(s)")
         if answer["L"] is None:
             return
-        L, F, B_y = (letter(name, e) for name in ("L", "F", "B_y"))
+        L, F, B_y = (e[name] for name in ("L", "F", "B_y"))
         yield Claim(relation(F, T @ A - L @ C), e, "F = T*A - L*C")
         yield Claim(relation(B_y, L + F @ H), e, "B_y = L + F*H")
         yield Claim(relation(T @ A - F @ T, B_y @ C), e, "T*A - F*T = B_y*C")
         if answer["B_u"] is not None:
-            driven = T @ letter("B", e)
-            driven = driven - B_y @ letter("D", e) if m.has_feedthrough else driven
-            yield Claim(relation(letter("B_u", e), driven), e, "B_u = T*B - B_y*D")
-        pencil = letter("s", e) @ identity(plant.order, e) - F
-        yield Claim(relation(pencil.apply("det"), letter("phi", e)), e, "det(s*I - F) = phi(s)")
+            driven = T @ e["B"]
+            driven = driven - B_y @ e["D"] if m.has_feedthrough else driven
+            yield Claim(relation(e["B_u"], driven), e, "B_u = T*B - B_y*D")
+        pencil = e["s"] @ identity(plant.order, e) - F
+        yield Claim(relation(pencil.apply("det"), e["phi"]), e, "det(s*I - F) = phi(s)")
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:

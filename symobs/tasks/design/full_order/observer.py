@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Matrix
 from symobs.exact.linear_algebra.transfer_function import Realisation
-from symobs.formula.tree.term import Term, letter
 from symobs.ground.dataclass import dataclass
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.tasks.analysis.page_parts import given, spread
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symobs.formula.tree import Environment
+    from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
     from symobs.system.specification import Entries, GainText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.rank.rank_test import RankResult
@@ -117,7 +117,7 @@ class ObserverDesign(GainDesign):
     @staticmethod
     def gain_term(environment: Environment) -> Term:
         """Return LC."""
-        return letter("L", environment) @ letter("C", environment)
+        return environment["L"] @ environment["C"]
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:

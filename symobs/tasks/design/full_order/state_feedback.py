@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact.linear_algebra.transfer_function import Realisation
-from symobs.formula.tree.term import Term, letter
 from symobs.ground.dataclass import dataclass
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.rank.observability import Controllability
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
 
     from symobs.exact import Matrix
     from symobs.formula.tree import Environment
+    from symobs.formula.tree.term import Term
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Entries, GainText, Name, Poles, PolynomialText
@@ -59,7 +59,7 @@ class StateFeedbackDesign(GainDesign):
     @staticmethod
     def gain_term(environment: Environment) -> Term:
         """Return BK."""
-        return letter("B", environment) @ letter("K", environment)
+        return environment["B"] @ environment["K"]
 
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, independent_rows
 from symobs.formula.tree import Environment, Literal
-from symobs.formula.tree.term import Term, identity, letter
+from symobs.formula.tree.term import Term, identity
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
@@ -27,14 +27,14 @@ def unassignable_claims(pair: ObserverPair, polynomial: Scalar) -> Iterator[Clai
     N, X = pair.kernel, pair.restricted
     values: dict[str, Scalar | Matrix] = {"A": pair.A, "C": pair.c, "N": N, "X": X, "phi": polynomial}
     e = Environment(variable=pair.variable, values=values)
-    A, C, kernel, restricted = (letter(name, e) for name in ("A", "C", "N", "X"))
-    pencil = letter("s", e) @ identity(X.shape[0], e) - restricted
+    A, C, kernel, restricted = (e[name] for name in ("A", "C", "N", "X"))
+    pencil = e["s"] @ identity(X.shape[0], e) - restricted
     yield Claim(relation(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1])), e, "C*N = 0")
     yield Claim(relation(A @ kernel, kernel @ restricted), e, "A*N = N*X")
     yield Claim(relation(N.shape[1], X.shape[0], "!==", 0), e, "X has the order of the kernel")
     yield _of_full_rank(pair, e)
     yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
-    phi = letter("phi", e)
+    phi = e["phi"]
     yield Claim(relation(phi, pair.fixed_polynomial * quotient + rest), e, "phi = fixed polynomial * q + r")
     yield Claim(relation(Term(Literal(rest), e), "!==", 0), e, "r is not zero")
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar, roots_of
 from symobs.exact.core.generators import identities
 from symobs.formula.tree import Environment, Relation
-from symobs.formula.tree.term import Term, identity, letter
+from symobs.formula.tree.term import Term, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Claim, Statement
@@ -95,8 +95,8 @@ class GainDesign(Result):
     def assignment(cls, order: int) -> Relation:
         """Return the claim of the type: det(sI − A + LC) = φ(s)."""
         e = Environment()
-        pencil = letter("s", e) @ identity(order, e) - letter("A", e) + cls.gain_term(e)
-        return relation(pencil.apply("det"), letter("phi", e))
+        pencil = e["s"] @ identity(order, e) - e["A"] + cls.gain_term(e)
+        return relation(pencil.apply("det"), e["phi"])
 
     # -- construction ------------------------------------------------------------------------------------------------
 
@@ -168,7 +168,7 @@ class GainDesign(Result):
     def of_given(cls, plant: StateSpace, gain: Matrix) -> Self:
         """Return the design with a given gain, its polynomial found."""
         e = Environment(variable=plant.variable, values=letters_of(plant) | {cls.letter: gain})
-        closed = letter("A", e) - cls.gain_term(e)
+        closed = e["A"] - cls.gain_term(e)
         polynomial = closed.value.normal().characteristic_polynomial(plant.variable)
         answer = {cls.letter: gain, "polynomial": polynomial}
         return cls(plant, "given", answer, kind=GivenGain(), pair=cls.dual_pair(plant))
@@ -192,11 +192,9 @@ class GainDesign(Result):
             self.kind,
         )
         if (self.pair.A, self.pair.c) != (own.A, own.c):
-            message = "the witness speaks of another plant"
-            raise CertificateRejected(message, repair=_BUG)
+            raise CertificateRejected("the witness speaks of another plant", repair=_BUG)
         if kind.exists != (gain is not None):
-            message = f"a design has a gain {self.letter} exactly where its kind says so"
-            raise CertificateRejected(message, repair=_BUG)
+            raise CertificateRejected(f"a design has a gain {self.letter} exactly where its kind says so", repair=_BUG)
         e = Environment(variable=self.plant.variable)
         if kind.desired is not None and phi is not kind.desired.polynomial:
             yield Claim(relation(phi, kind.desired.polynomial), e, "the polynomial is the one asked for")

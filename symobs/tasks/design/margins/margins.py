@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.exact import Factored, Matrix, RealNumber, Scalar, transfer
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
 from symobs.formula.tree import Decimals, Environment
-from symobs.formula.tree.term import Term, identity, letter
+from symobs.formula.tree.term import Term, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
@@ -109,22 +109,22 @@ class Margins(Result):
         if self.written is not None:
             values |= {"B": m.B, "C": m.C, "D": m.D, "F": self.written.value, "q": _monic(self.written)[1]}
         e = Environment(variable=plant.variable, values=values)
-        whole = (letter("s", e) @ identity(plant.order, e) - letter("A", e)).apply("det")
+        whole = (e["s"] @ identity(plant.order, e) - e["A"]).apply("det")
         if self.design is not None:
             if own is not None:
-                inner = letter("s", e) @ identity(values["A_c"].shape[0], e) - letter("A_c", e)
+                inner = e["s"] @ identity(values["A_c"].shape[0], e) - e["A_c"]
                 whole = whole @ inner.apply("det")
-            yield Claim(relation(letter("chi_o", e), whole), e, "P = det(s*I - A), times that of the compensator")
+            yield Claim(relation(e["chi_o"], whole), e, "P = det(s*I - A), times that of the compensator")
             yield Claim(
                 relation(closed, _plain(self.design.fields[_LOOPS[self.design.task][0]])), e, "P + N of the design"
             )
         else:
-            A, B, C, D, F = (letter(name, e) for name in "ABCDF")
-            yield Claim(relation(letter("chi_o", e), whole @ letter("q", e)), e, "P = det(s*I - A) times that of F")
-            G = C @ (letter("s", e) @ identity(plant.order, e) - A).inverse @ B + D
+            A, B, C, D, F = (e[name] for name in "ABCDF")
+            yield Claim(relation(e["chi_o"], whole @ e["q"]), e, "P = det(s*I - A) times that of F")
+            G = C @ (e["s"] @ identity(plant.order, e) - A).inverse @ B + D
             one = identity(1, e)
             said = "P + N = P*(1 + F*G)"
-            yield Claim(relation(letter("chi_cl", e) @ one, letter("chi_o", e) @ (one + F @ G)), e, said)
+            yield Claim(relation(e["chi_cl"] @ one, e["chi_o"] @ (one + F @ G)), e, said)
         if answer["slowest"] is not None:
             yield Statement("the slowest root", lambda: "exact" if self._slowest == answer["slowest"] else "")
         if answer["modulus"] is not None:

@@ -28,7 +28,7 @@ from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.core.generators import identities
 from symobs.exact.floating.riccati import enclosed_solution, hamiltonian
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import identity, letter
+from symobs.formula.tree.term import identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, Undecided
 from symobs.proof.certificate.claims import Claim, Statement
@@ -151,8 +151,7 @@ class OptimalGain(Result):
         answer, digits, regulator = self.answer, self.answer["digits"], self.regulator
         has_P = answer["P"] is not None or digits is not None
         if [has_P, answer["obstacle"] is not None, answer["question"] is not None].count(True) != 1:
-            message = "there is a P, an obstacle, or an open question"
-            raise CertificateRejected(message, repair=_BUG)
+            raise CertificateRejected("there is a P, an obstacle, or an open question", repair=_BUG)
         signs = self.plant.symbols.signs
         yield Statement(
             "the weight of the input is positive definite", lambda: _shown(_is_definite(regulator.R, signs))
@@ -180,12 +179,12 @@ class OptimalGain(Result):
         e = Environment(variable=plant.variable, values=values, signs=signs, relations=relations)
 
         def of(name: str) -> Term:
-            return letter(name, e)
+            return e[name]
 
         yield Claim(relation(of("P"), of("P").T), e, "P = P.T")
         for equation, says in self.equations(of, discrete=plant.is_discrete):
             yield Claim(equation, e, says)
-        pencil = letter("s", e) @ identity(plant.order, e) - self.loop(of)
+        pencil = e["s"] @ identity(plant.order, e) - self.loop(of)
         yield Claim(relation(pencil.apply("det"), of("p")), e, "the polynomial is that of the loop")
         v, factors = plant.variable, self.answer["factors"]
         is_stable = stability(polynomial, v, signs, discrete=plant.is_discrete).verdict == "yes"
@@ -206,11 +205,11 @@ class OptimalGain(Result):
         A, _, Q = regulator.uncrossed
         row, of = (regulator.B.T, regulator.A.T) if found.kind == "uncontrollable" else (Q, A)
         e = Environment(variable=plant.variable, values={"row": row, "of": of, "N": found.N, "X": found.X})
-        N, X = letter("N", e), letter("X", e)
-        yield Claim(relation(letter("row", e) @ N, Matrix.zeros(row.shape[0], found.N.shape[1])), e, "N is hidden")
-        yield Claim(relation(letter("of", e) @ N, N @ X), e, "N is invariant")
+        N, X = e["N"], e["X"]
+        yield Claim(relation(e["row"] @ N, Matrix.zeros(row.shape[0], found.N.shape[1])), e, "N is hidden")
+        yield Claim(relation(e["of"] @ N, N @ X), e, "N is invariant")
         yield Claim(relation(N.apply("rank"), found.N.shape[1]), e, "N has full rank")
-        pencil = letter("s", e) @ identity(found.X.shape[0], e) - X
+        pencil = e["s"] @ identity(found.X.shape[0], e) - X
         yield Claim(relation(pencil.apply("det"), found.polynomial), e, "the polynomial of the hidden modes")
         signs, variable, discrete = plant.symbols.signs, plant.variable, plant.is_discrete
         if found.kind == "uncontrollable":
@@ -400,8 +399,7 @@ def _require_signs(regulator: Regulator, weights: Mapping[str, Matrix], signs: M
             size = matrix.shape[0]
             raise InputError(message, where=where, repair=f"give a symmetric {wanted} {size}×{size} matrix")
         message = f"{name} is not known to be {wanted}: the sign of {open_value} is open"
-        repair = "declare signs of the symbols that decide it, or put numbers in"
-        raise InputError(message, where=where, repair=repair)
+        raise InputError(message, where=where, repair="declare signs of the symbols that decide it, or put numbers in")
     if not regulator.N.is_zero and not is_semidefinite(regulator.uncrossed[2], signs):
         message = "Q - N R^-1 N^T is not known to be positive semidefinite"
         raise InputError(message, where="specification.N", repair="give a smaller N, or declare signs that decide it")

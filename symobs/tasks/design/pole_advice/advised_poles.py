@@ -26,7 +26,7 @@ from symobs.exact.time_functions.antiderivative import butterworth, butterworth_
 from symobs.formula.phrases import PHRASES
 from symobs.formula.phrases.languages import COUNTED
 from symobs.formula.tree import Environment, Literal
-from symobs.formula.tree.term import Term, identity, letter
+from symobs.formula.tree.term import Term, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Claim
@@ -441,9 +441,9 @@ class AdvisedPoles(Result):
         values["phi_o"] = answer["polynomial"].value
         e = Environment(variable=variable, values=values, signs=self.plant.symbols.signs)
         e = e.with_relations(identities([zeros, rest])[1])
-        z, r, s = (letter(name, e) for name in ("phi_z", "phi_r", "s"))
+        z, r, s = (e[name] for name in ("phi_z", "phi_r", "s"))
         yield Claim(relation(numerator_term(e, self.plant), z @ Term(Literal(self.zeros.others), e)), e)
-        yield Claim(relation(letter("phi_o", e), z @ r), e)
+        yield Claim(relation(e["phi_o"], z @ r), e)
         if not self.count:
             yield Claim(relation(r, 1), e)
         elif self.request.radius is not None:
@@ -488,7 +488,7 @@ class AdvisedPoles(Result):
         if omega_d is not None:
             yield Claim(relation(overshoot_of(omega_d / sigma), "<=", request.overshoot), e)
         expected = product_of(dominated(self.count, sigma, omega_d, self.plant.variable))
-        yield Claim(relation(letter("phi_r", e), expected), e, "phi_r = (pair)(further left)")
+        yield Claim(relation(e["phi_r"], expected), e, "phi_r = (pair)(further left)")
 
     def _claims_of_fixed_modes(self) -> Iterator[Claim]:
         """Yield the claim that the modes missing among the poles are unobservable."""
@@ -498,11 +498,11 @@ class AdvisedPoles(Result):
         m, N, X = self.plant.matrices, self.pair.kernel, self.pair.restricted
         size = N.shape[1]
         e = Environment(variable=variable, values={"A": m.A, "C": m.C, "N": N, "X": X})
-        A, C, N_, X_ = (letter(name, e) for name in ("A", "C", "N", "X"))
+        A, C, N_, X_ = (e[name] for name in ("A", "C", "N", "X"))
         yield Claim(relation(C @ N_, Matrix.zeros(1, size)), e, "C*N = 0")
         yield Claim(relation(A @ N_, N_ @ X_), e)
         yield Claim(relation(N_.apply("rank"), size), e)
-        pencil = letter("s", e) @ identity(size, e) - X_
+        pencil = e["s"] @ identity(size, e) - X_
         yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
 
     # -- what follows ------------------------------------------------------------------------------------------------
@@ -556,9 +556,9 @@ class AdvisedPoles(Result):
 
 def numerator_term(e: Environment, plant: StateSpace) -> Term:
     """Return C adj(sI − A) B + D det(sI − A) as a formula."""
-    pencil = letter("s", e) @ identity(plant.order, e) - letter("A", e)
-    found = letter("C", e) @ pencil.apply("adj") @ letter("B", e)
-    return found + letter("D", e) @ pencil.apply("det") if plant.matrices.has_feedthrough else found
+    pencil = e["s"] @ identity(plant.order, e) - e["A"]
+    found = e["C"] @ pencil.apply("adj") @ e["B"]
+    return found + e["D"] @ pencil.apply("det") if plant.matrices.has_feedthrough else found
 
 
 def on_circle(count: int, radius: Scalar, variable: str) -> tuple[Scalar, ...]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.exact import Matrix, Scalar, factored, independent_rows, primitive_kernel, rank, unit_rows
 from symobs.exact.core.generators import NotWritten
 from symobs.formula.tree import Environment, Literal
-from symobs.formula.tree.term import Term, letter
+from symobs.formula.tree.term import Term
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Claim
@@ -276,10 +276,10 @@ class Family:
             part = self.pair.part_of(self.general)
             values["L"] = part if answer["shift"] is None else part - transposed_for_task(answer["shift"])
         e = Environment(variable=self.pair.variable, values=values)
-        A_, C_, F, G, X = (letter(name, e) for name in ("A", "C", "F", "G", "X"))
+        A_, C_, F, G, X = (e[name] for name in ("A", "C", "F", "G", "X"))
         yield Claim(relation(A_.T @ X - X @ F, C_.T @ G), e, "A.T*X - X*F = C.T*G")
         if self.general is not None:
-            yield Claim(relation(letter("L", e).T @ X, G), e, "L.T*X = G")
+            yield Claim(relation(e["L"].T @ X, G), e, "L.T*X = G")
         weights, first = Matrix.row(self.equation.weights), Matrix.unit(A.shape[0], 0).T
         yield Claim(relation(Term(Literal(weights), e) @ G, first), e, "w*G = [1, 0, ..., 0]")
         yield Claim(relation(X.apply("det"), "!==", 0), e, "det(X) is not zero identically")

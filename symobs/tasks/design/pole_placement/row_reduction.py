@@ -50,8 +50,7 @@ class Reduction:
     @property
     def f(self) -> Matrix:
         """LᵀΨ."""
-        outputs = self.vector.shape[0] // self.size - self.order
-        return self._columns(self.order * self.size, outputs)
+        return self._columns(self.order * self.size, self.vector.shape[0] // self.size - self.order)
 
     def _columns(self, start: int, height: int) -> Matrix:
         entries = self.vector.entries

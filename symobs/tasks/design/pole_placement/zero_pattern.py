@@ -133,8 +133,7 @@ def _in_root(gain: Matrix, factor: Scalar, name: str) -> Matrix | RootGain:
         as_root = {name: Scalar.symbol(EIGENVALUE)}
         return RootGain(reduced.substitute(as_root), factor.substitute(as_root), root)
     found = reduced.substitute({name: closed})
-    ideal = Ideal.of(identities(found.entries)[1])
-    return modulo(found, ideal)
+    return modulo(found, Ideal.of(identities(found.entries)[1]))
 
 
 def _unknowns_in(equations: Sequence[Scalar]) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 from symobs.exact import Ideal, Matrix, Root, Scalar, kernel, modulo, unit_rows
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import block, identity, letter
+from symobs.formula.tree.term import block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Certificate, Claim
@@ -194,10 +194,10 @@ class ReducedOrderObserver(Result):
         values |= {"phi": self.desired.polynomial, "R": T.select(range(plant.outputs, plant.order), columns)}
         e = Environment(variable=plant.variable, values=values)
         parts, inner = partition(plant, T), self.inner
-        yield Claim(relation(T.select(rows, columns), letter("C", e)), e, "the upper rows of T are C")
+        yield Claim(relation(T.select(rows, columns), e["C"]), e, "the upper rows of T are C")
         yield Claim(relation(parts.A22, inner.plant.matrices.A), e, "the inner gain is one for A22")
         yield Claim(relation(parts.A12, inner.plant.matrices.C), e, "the inner gain is one for A12")
-        yield Claim(relation(letter("phi", e), inner.answer["polynomial"]), e, "the inner gain is one for phi(s)")
+        yield Claim(relation(e["phi"], inner.answer["polynomial"]), e, "the inner gain is one for phi(s)")
         if (answer["L"] is None) != (inner.answer["L"] is None):
             message = "there is a reduced-order observer exactly where the pair (A12, A22) has a gain"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
@@ -206,18 +206,18 @@ class ReducedOrderObserver(Result):
         if (answer["G"] is None) == plant.matrices.has_input:
             message = "G belongs to a plant with an input, and to no other"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
-        A, C, L, F, H, M, R = (letter(name, e) for name in ("A", "C", "L", "F", "H", "M", "R"))
+        A, C, L, F, H, M, R = (e[name] for name in ("A", "C", "L", "F", "H", "M", "R"))
         P = R - L @ C
         yield Claim(relation(P @ A - F @ P, H @ C), e, "P*A - F*P = H*C")
         if answer["G"] is not None:
-            driven = P @ letter("B", e)
+            driven = P @ e["B"]
             if plant.matrices.has_feedthrough:
-                driven = driven - H @ letter("D", e)
-            yield Claim(relation(letter("G", e), driven), e, "G = P*B - H*D")
+                driven = driven - H @ e["D"]
+            yield Claim(relation(e["G"], driven), e, "G = P*B - H*D")
         yield Claim(relation(M @ block([[C], [P]]), identity(plant.order, e)), e, "M*[C; P] = I")
         order = plant.order - plant.outputs
-        pencil = letter("s", e) @ identity(order, e) - F
-        yield Claim(relation(pencil.apply("det"), letter("phi", e)), e, "det(s*I - F) = phi(s)")
+        pencil = e["s"] @ identity(order, e) - F
+        yield Claim(relation(pencil.apply("det"), e["phi"]), e, "det(s*I - F) = phi(s)")
 
     @property
     def systems(self) -> Mapping[str, Realisation]:
@@ -316,8 +316,8 @@ class DependentOutputs(ReducedOrderObserver):
     def claims(self) -> Iterator[Claim]:
         """Yield w C = 0 and w ≠ 0."""
         e = Environment(values=letters_of(self.plant) | {"w": self.answer["w"]})
-        w, m = letter("w", e), self.plant.matrices
-        yield Claim(relation(w @ letter("C", e), Matrix.zeros(1, m.C.shape[1])), e, "w*C = 0")
+        w, m = e["w"], self.plant.matrices
+        yield Claim(relation(w @ e["C"], Matrix.zeros(1, m.C.shape[1])), e, "w*C = 0")
         yield Claim(relation(w, "!==", Matrix.zeros(1, m.C.shape[0])), e, "w is not 0")
         if any(self.answer[name] is not None for name in "LTFGHM"):
             message = "outputs that depend on each other leave no observer of order n - p"
@@ -422,8 +422,7 @@ def reduced_order_observer(
 def _read_coordinates(value: object, plant: StateSpace) -> Matrix:
     T = read_gain(value, plant, "T", (plant.order, plant.order))
     if T.select(range(plant.outputs), range(plant.order)) != plant.matrices.C:
-        message = "the upper rows of T are not C"
-        raise InputError(message, where="specification.T", repair="write T as [C; R]")
+        raise InputError("the upper rows of T are not C", where="specification.T", repair="write T as [C; R]")
     if T.determinant().is_zero:
         message = "T is singular"
         raise InputError(message, where="specification.T", repair="choose rows below C that are independent of it")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.exact import Matrix, Scalar, kernel, rank, transfer_matrix
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.formula.tree.term import Term, block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Certificate, Claim
@@ -99,13 +99,11 @@ class FeedforwardDesign(Result):
 
     def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
         """Return the design whose loop has other gains."""
-        loop = self.loop.with_gains(gains)
-        return self.of(loop, self.method)
+        return self.of(self.loop.with_gains(gains), self.method)
 
     def following_from(self, gains: Mapping[str, Matrix]) -> Self:
         """Return the design whose loop has given gains."""
-        loop = self.loop.following_from(gains)
-        return self.of(loop, self.method)
+        return self.of(self.loop.following_from(gains), self.method)
 
     def design_of(self, gain: str) -> GainDesign:
         """Return the design of one half of the loop."""
@@ -135,33 +133,33 @@ class FeedforwardDesign(Result):
             name: Matrix.of(v.rows) if isinstance(v, Matrix) else v for name, v in values.items()
         }  # as unpickled
         e = Environment(variable=self.plant.variable, values=restored)
-        A, B, C, D = (letter(name, e) for name in "ABCD")
-        K_ = letter("K", e)
+        A, B, C, D = (e[name] for name in "ABCD")
+        K_ = e["K"]
         order, one = self.plant.order, identity(self.plant.order, e)
         if stuck is not None:
-            still = A @ letter("x_0", e) - B @ K_ @ letter("x_0", e)
-            there = letter("x_0", e) if self.plant.is_discrete else Matrix.zeros(order, 1)
+            still = A @ e["x_0"] - B @ K_ @ e["x_0"]
+            there = e["x_0"] if self.plant.is_discrete else Matrix.zeros(order, 1)
             yield Claim(relation(still, there), e, "a mode never comes to rest")
-            yield Claim(relation(letter("x_0", e), "!==", Matrix.zeros(order, 1)), e, "the mode is not 0")
+            yield Claim(relation(e["x_0"], "!==", Matrix.zeros(order, 1)), e, "the mode is not 0")
             return
         rest = (one - A + B @ K_ if self.plant.is_discrete else B @ K_ - A).inverse
         at_rest = (C - D @ K_) @ rest @ B + D
         if w is not None:
-            yield Claim(relation(letter("w", e) @ at_rest, Matrix.zeros(1, self.plant.inputs)), e, "w*G = 0")
-            yield Claim(relation(letter("w", e), "!==", Matrix.zeros(1, self.plant.outputs)), e, "w is not 0")
+            yield Claim(relation(e["w"] @ at_rest, Matrix.zeros(1, self.plant.inputs)), e, "w*G = 0")
+            yield Claim(relation(e["w"], "!==", Matrix.zeros(1, self.plant.outputs)), e, "w is not 0")
             return
-        F_, T, s = letter("F", e), letter("T_v", e), letter("s", e)
+        F_, T, s = e["F"], e["T_v"], e["s"]
         yield Claim(relation(at_rest @ F_, identity(self.plant.outputs, e)), e, "G*F = I")
         yield Claim(relation(T, (C - D @ K_) @ (s @ one - A + B @ K_).inverse @ B @ F_ + D @ F_), e)
         if isinstance(self.loop, KnownState):
             return
         errors = self.loop.error_coordinates.shape[0] - order
         zero = e.extended_by(values={"O_e": Matrix.zeros(errors, self.plant.outputs)})
-        A_cl, K_e, nothing = letter("A_cl", zero), letter("K_e", zero), letter("O_e", zero)
+        A_cl, K_e, nothing = zero["A_cl"], zero["K_e"], zero["O_e"]
         seen = block([[C - D @ K_, D @ K_e]])
         driven = block([[B @ F_], [nothing]])
-        whole = seen @ (letter("s", zero) @ identity(order + errors, zero) - A_cl).inverse @ driven + D @ F_
-        yield Claim(relation(letter("T_v", zero), whole), zero, "the whole loop with its error responds alike")
+        whole = seen @ (zero["s"] @ identity(order + errors, zero) - A_cl).inverse @ driven + D @ F_
+        yield Claim(relation(zero["T_v"], whole), zero, "the whole loop with its error responds alike")
 
     @property
     def systems(self) -> Mapping[str, Realisation]:

@@ -16,7 +16,7 @@ from symobs.exact import Matrix, Scalar, kernel, rank
 from symobs.exact.core.generators import identities
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment, Evaluated, Literal
-from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.formula.tree.term import Term, block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Certificate, Claim
@@ -107,8 +107,7 @@ class IntegralAction(Result):
         """Return the design of given gains; one that is not given stays."""
         given = self.loop.of_given(self.loop.plant, self._whole(gains))
         placed = DesiredPolynomial(self.plant.variable, (given.answer["polynomial"],))
-        design = replace(given, kind=AssignedGain(placed))
-        return self.of_loop(self.plant, design, self.method)
+        return self.of_loop(self.plant, replace(given, kind=AssignedGain(placed)), self.method)
 
     def design_of(self, gain: str) -> StateFeedbackDesign:  # noqa: ARG002 - one for both
         """Return the feedback of plant and integrator together."""
@@ -117,8 +116,7 @@ class IntegralAction(Result):
     def _whole(self, gains: Mapping[str, Matrix]) -> Matrix:
         first, second = (gains.get(name, self.answer[name]) for name in self.gains)
         if first is None or second is None:
-            message = "there are no such gains"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("there are no such gains", repair="please report this: it is a bug of symobs")
         return Matrix.block([[first, -second]])
 
     def claims(self) -> Iterator[Claim]:
@@ -139,15 +137,13 @@ class IntegralAction(Result):
             beside = replace(e, relations=(*relations, *outside(self.distances)), signs=plant.symbols.signs)
             yield Claim(relation(whole.apply("rank"), size), beside, "rank [A B; C D] = n + p")
         else:
-            yield Claim(
-                relation(letter("w", e) @ whole, Matrix.zeros(1, plant.order + plant.inputs)), e, "w*[A B; C D] = 0"
-            )
-            yield Claim(relation(letter("w", e), "!==", Matrix.zeros(1, size)), e, "w is not 0")
+            yield Claim(relation(e["w"] @ whole, Matrix.zeros(1, plant.order + plant.inputs)), e, "w*[A B; C D] = 0")
+            yield Claim(relation(e["w"], "!==", Matrix.zeros(1, size)), e, "w is not 0")
         if K is not None:
-            both = block([[letter("K", e), -letter("k_I", e)]])
+            both = block([[e["K"], -e["k_I"]]])
             yield Claim(relation(both, self.loop.answer["K"]), e, "[K, -k_I] is the feedback of plant and integrator")
             closed = block(closed_loop(e, plant))
-            pencil = letter("s", e) @ identity(size, e) - closed
+            pencil = e["s"] @ identity(size, e) - closed
             yield Claim(relation(pencil.apply("det"), self.answer["polynomial"]), e, "det(s*I - closed loop) = phi")
 
     @cached_property
@@ -249,13 +245,13 @@ def system_matrix(plant: StateSpace) -> Matrix:
 
 
 def _system(e: Environment, plant: StateSpace) -> Term:
-    A, B, C, D = (letter(name, e) for name in "ABCD")
+    A, B, C, D = (e[name] for name in "ABCD")
     return block([[A - identity(plant.order, e) if plant.is_discrete else A, B], [C, D]])
 
 
 def closed_loop(e: Environment, plant: StateSpace) -> list[list[Term]]:
     """Return the blocks of [A − BK, B k_I; −C + DK, −D k_I], with I − D k_I in discrete time."""
-    A, B, C, D, K, k_I = (letter(name, e) for name in ("A", "B", "C", "D", "K", "k_I"))
+    A, B, C, D, K, k_I = (e[name] for name in ("A", "B", "C", "D", "K", "k_I"))
     p, one = plant.outputs, identity(plant.outputs, e)
     if not plant.matrices.has_feedthrough:
         return [[A - B @ K, B @ k_I], [-C, one if plant.is_discrete else Term(Literal(Matrix.zeros(p, p)), e)]]

@@ -25,7 +25,7 @@ from symobs.exact import (
 )
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment, Literal, Roots
-from symobs.formula.tree.term import Term, block, letter
+from symobs.formula.tree.term import Term, block
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, Undecided
 from symobs.proof.certificate.claims import Certificate, Claim
@@ -174,20 +174,20 @@ class OutputRegulation(Result):
             message = "the regulator equations have a solution exactly where nothing shows that they have none"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         e = _environment(plant, self.exogenous, answer)
-        A, B, C, D, S, Q, E = (letter(name, e) for name in ("A", "B", "C", "D", "S_w", "Q_r", "E_d"))
+        A, B, C, D, S, Q, E = (e[name] for name in ("A", "B", "C", "D", "S_w", "Q_r", "E_d"))
         if K is not self.loop.answer["K"]:
             yield Claim(relation(K, self.loop.answer["K"]), e, "K is the certified gain")
         if U is not None:
-            U_, V = letter("U_r", e), letter("V_r", e)
+            U_, V = e["U_r"], e["V_r"]
             yield Claim(relation(U_ @ A + V @ C, S @ U_), e, "U*A + V*C = S*U")
             yield Claim(relation(U_ @ B + V @ D, Matrix.zeros(self.exogenous.order, plant.inputs)), e, "U*B + V*D = 0")
             yield Claim(relation(self.obstacle, "!==", 0), e, "trace of U*E - V*Q is not 0")
         else:
-            Pi_, Gamma = letter("Pi_w", e), letter("Gamma_w", e)
+            Pi_, Gamma = e["Pi_w"], e["Gamma_w"]
             yield Claim(relation(A @ Pi_ + B @ Gamma + E, Pi_ @ S), e, "A*Pi + B*Gamma + E = Pi*S")
             yield Claim(relation(C @ Pi_ + D @ Gamma, Q), e, "C*Pi + D*Gamma = Q")
             if F is not None:
-                yield Claim(relation(letter("F_w", e), Gamma + letter("K", e) @ Pi_), e, "F = Gamma + K*Pi")
+                yield Claim(relation(e["F_w"], Gamma + e["K"] @ Pi_), e, "F = Gamma + K*Pi")
         yield from _blocking_claims(plant, self.exogenous.S, answer["blocked"])
 
     @property
@@ -429,7 +429,7 @@ def _blocking_claims(
         if not plant.equations and not rest.is_polynomial_in(plant.variable):
             message = f"{factor} is no factor of the characteristic polynomial of S"
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
-        w = letter("w", e)
+        w = e["w"]
         annuls = relation(w @ Term(Literal(matrix), e), Matrix.zeros(1, matrix.shape[1]))
         yield Claim(annuls, e, f"w*[A - lam*I, B; C, D] = 0 where {factor} = 0")
         yield Claim(relation(w, "!==", Matrix.zeros(1, matrix.shape[0])), e, "w is not 0")

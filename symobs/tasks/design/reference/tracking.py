@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar, independent_rows, solve_or_refute
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import block, identity, letter
+from symobs.formula.tree.term import block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Certificate, Claim
@@ -84,13 +84,11 @@ class TrackingDesign(Result):
 
     def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
         """Return the design whose loop has other gains."""
-        loop = self.loop.with_gains(gains)
-        return self.of(loop, self.reference, self.start, self.method)
+        return self.of(self.loop.with_gains(gains), self.reference, self.start, self.method)
 
     def following_from(self, gains: Mapping[str, Matrix]) -> Self:
         """Return the design whose loop has given gains."""
-        loop = self.loop.following_from(gains)
-        return self.of(loop, self.reference, self.start, self.method)
+        return self.of(self.loop.following_from(gains), self.reference, self.start, self.method)
 
     def design_of(self, gain: str) -> GainDesign:
         """Return the design of one half of the loop."""
@@ -109,12 +107,12 @@ class TrackingDesign(Result):
             raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
         values = letters_of(self.plant) | {"A_ref": self.reference, "V_d": self.passed, "K_d": K_d, "w": w}
         e = Environment(variable=self.plant.variable, values=values)
-        A, B, A_ref, V = (letter(name, e) for name in ("A", "B", "A_ref", "V_d"))
+        A, B, A_ref, V = (e[name] for name in ("A", "B", "A_ref", "V_d"))
         if self.start is not None:
             yield from self._passed_through(e)
         everywhere = self.start is None
         if w is not None:
-            row = letter("w", e)
+            row = e["w"]
             left = row @ (A - A_ref) if everywhere else row @ (A - A_ref) @ V
             yield Claim(relation(row @ B, Matrix.zeros(1, self.plant.inputs)), e, "w*B = 0")
             zero = Matrix.zeros(1, self.passed.shape[1])
@@ -122,15 +120,15 @@ class TrackingDesign(Result):
                 relation(left, "!==", zero), e, "w*(A - A_d) is not 0" if everywhere else "w*(A - A_d)*V is not 0"
             )
         else:
-            left = A_ref - A + B @ letter("K_d", e)
+            left = A_ref - A + B @ e["K_d"]
             zero = Matrix.zeros(self.plant.order, self.passed.shape[1])
             said = "A_d - A + B*K_d = 0" if everywhere else "(A_d - A + B*K_d)*V = 0"
             yield Claim(relation(left if everywhere else left @ V, zero), e, said)
         if self.has_gains:
             values = {"A_e": self.matrix_of_errors, "phi": self.loop.loop_polynomial.value}
             own = Environment(variable=self.plant.variable, values=values)
-            pencil = letter("s", own) @ identity(self.matrix_of_errors.shape[0], own) - letter("A_e", own)
-            yield Claim(relation(pencil.apply("det"), letter("phi", own)), own, "det(s*I - error matrix) = phi_c*phi_o")
+            pencil = own["s"] @ identity(self.matrix_of_errors.shape[0], own) - own["A_e"]
+            yield Claim(relation(pencil.apply("det"), own["phi"]), own, "det(s*I - error matrix) = phi_c*phi_o")
 
     def _passed_through(self, e: Environment) -> Iterator[Claim]:
         """Yield that V holds the start and is carried into itself by A_d: V Z = [x_d(0), A_d V]."""
@@ -141,7 +139,7 @@ class TrackingDesign(Result):
         Z = V.select(rows, range(V.shape[1])).solve(target.select(rows, range(target.shape[1])))
         inside = e.extended_by(values={"Z": Z, "x_d0": target})
         yield Claim(
-            relation(letter("V_d", inside) @ letter("Z", inside), letter("x_d0", inside)),
+            relation(inside["V_d"] @ inside["Z"], inside["x_d0"]),
             inside,
             "V*Z = [x_d(0), A_d*V]",
         )

@@ -115,8 +115,7 @@ def _of_pari(rows: str) -> str:
 
 def drawn(plant: str) -> Any:
     specification = '[specification]\npoles = "p"\n[variants.parameters]\np = { poles = 2, from = [-2, -2] }\n'
-    text = f'task = "observer"\n[plant]\n{plant}\n{specification}'
-    return candidate(read_table(text), 0, 0)
+    return candidate(read_table(f'task = "observer"\n[plant]\n{plant}\n{specification}'), 0, 0)
 
 
 def test_the_same_plant_in_other_coordinates_is_known() -> None:

@@ -52,8 +52,7 @@ def test_a_picture_that_is_not_faithful_is_left_out_with_a_warning(monkeypatch: 
 
 def test_a_bug_of_evaluation_is_no_false_claim(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: Any) -> Any:
-        message = "a bug"
-        raise AttributeError(message)
+        raise AttributeError("a bug")
 
     monkeypatch.setattr("symobs.proof.certificate.claims.evaluate", broken)
     fact, e = rank_is([[1, a], [0, 1]], 2, (a - b,))
