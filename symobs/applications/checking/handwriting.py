@@ -340,7 +340,8 @@ _CALLED: dict[str, re.Pattern[str]] = {
 def squashed(left: str) -> str:
     """Return the left side of a relation without what is written in several ways: blanks, stars, the argument."""
     spelt = "".join(spellings(c)[0] if c in GREEK_LETTERS.values() else c for c in left)
-    return re.sub(r"\(([szpt]|lam(bda)?)\)", "", re.sub(r"[\s*·]", "", spelt))
+    text = re.sub(r"[\s*·]", "", spelt)
+    return re.sub(r"\(([szpt]|lam(bda)?)\)", "", text)
 
 
 def letters_of(view: ResultInConvention, field: str) -> set[str]:

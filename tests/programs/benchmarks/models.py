@@ -74,7 +74,8 @@ def rational(order: int) -> tuple[list[list[Fraction]], list[list[Fraction]], li
         [Fraction((i**3 + 7 * i * j**2 + 5 * i * j + 11 * j) % 101 - 50, (3 * i + j**2) % 7 + 1) for j in indices]
         for i in indices
     ]
-    return A, [[Fraction((j**3 + 3 * j) % 101 - 50) for j in indices]], [-k for k in indices]
+    C = [[Fraction((j**3 + 3 * j) % 101 - 50) for j in indices]]
+    return A, C, [-k for k in indices]
 
 
 def _numbered(stem: str, count: int) -> list[str]:

@@ -28,7 +28,9 @@ def seconds(model: Model, order: int) -> tuple[float, list[tuple[fmpz_mpoly, fmp
     A = [[generators[f"a{i}{j}"] for j in indices] for i in indices]
     C = [generators[f"c{j}"] for j in indices]
     poles = [generators[f"p{k}"] for k in indices]
-    return time.process_time() - time.process_time(), gain(A, C, poles)
+    start = time.process_time()
+    entries = gain(A, C, poles)
+    return time.process_time() - start, entries
 
 
 def gain(

@@ -22,7 +22,9 @@ def seconds(
     """Return the processor time and L; the tables of integers are made before."""
     d, e = (lcm(*(entry.denominator for row in rows for entry in row)) for rows in (A, C))
     T, c = fmpz_mat([[int(entry * d) for entry in row] for row in A]), fmpz_mat([[int(x * e) for x in C[0]]])
-    return time.process_time() - time.process_time(), gain(T, c, d, e, poles)
+    start = time.process_time()
+    found = gain(T, c, d, e, poles)
+    return time.process_time() - start, found
 
 
 def gain(T: fmpz_mat, c: fmpz_mat, d: int, e: int, poles: Sequence[int]) -> fmpq_mat:

@@ -211,7 +211,8 @@ def closes_the_loop(part: Part, F: Ratio) -> bool:
     if len(above) > len(below) or len(below) - 1 > part["order"]:
         return False
     P, Q = transfer(*(part[name] for name in "ABCD"))
-    return divided_by(times(chi, plus(times(Q, below), times(P, above))), Q) == (part["phi"], ONE)
+    loop = divided_by(times(chi, plus(times(Q, below), times(P, above))), Q)
+    return loop == (part["phi"], ONE)
 
 
 def judge_compensator(
