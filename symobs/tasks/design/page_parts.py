@@ -468,6 +468,10 @@ STABILITY_CONDITIONS = 40
 PRODUCTS_ORDER = 2
 
 
+#: Up to this order sums of products of matrices stand beside their values, and a loop in a second set of coordinates.
+WRITTEN_OUT_ORDER = 3
+
+
 #: The loop before it is simplified; up to this order it is also written before its factors.
 LOOP = 16
 

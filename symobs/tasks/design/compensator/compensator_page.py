@@ -224,11 +224,12 @@ def _state_space(page: Builder, design: CompensatorDesign) -> None:
     own, is_written = closed @ x_hat + L @ page["y"], closed.value.size <= readability.MATRIX
     small = page.plant.order == readability.PRODUCTS_ORDER and not m.has_feedthrough
     shown = A.as_value - B.as_value @ K.as_value - L.as_value @ C.as_value if small else shown
+    numbers = [shown] if page.plant.order <= readability.WRITTEN_OUT_ORDER else []
     if not is_written:
         page.equal(relation(x_hat.derivative, own), say="observer_closed", **both)
-        page.define("A_c", closed, shown, say="compensator_matrix")
+        page.define("A_c", closed, *numbers, say="compensator_matrix")
     else:
-        page.define("A_c", closed, shown, say="observer_closed_matrix", **both)
+        page.define("A_c", closed, *numbers, say="observer_closed_matrix", **both)
         written = page["A_c"].as_value @ x_hat + L.as_value @ page["y"]
         page.conclude_silently(relation(x_hat.derivative, own))
         page.equal(
@@ -342,7 +343,7 @@ def _error_coordinates(page: Builder, design: CompensatorDesign, *, large: bool)
     second = block([[A, -(B @ K)], [L @ C, A - B @ K - L @ C]])
     states = block([[x], [page["x_hat"]]])
     members = [states.derivative, second @ states]
-    if not large and is_narrow(second.value):
+    if not large and order <= readability.WRITTEN_OUT_ORDER and is_narrow(second.value):
         members.append(in_blocks(page, second.value, halves, halves) @ states)
     one = page.identity(order)
     turn = block([[one, zero], [one, -one]])

@@ -226,7 +226,8 @@ def _error_coordinates(page: Builder, design: MinimalOrderCompensator, *, large:
     driven = G + H @ page["D"] if page.plant.matrices.has_feedthrough else G
     second = block([[A - B @ K_y @ C, -(B @ K_2)], [(H - driven @ K_y) @ C, F - driven @ K_2]])
     states = block([[x], [z]])
-    numbers = [in_blocks(page, second.value, sizes, sizes) @ states] if not large and is_narrow(second.value) else []
+    is_written = not large and order <= readability.WRITTEN_OUT_ORDER and is_narrow(second.value)
+    numbers = [in_blocks(page, second.value, sizes, sizes) @ states] if is_written else []
     page.equal(relation(states.derivative, second @ states, *numbers), say="reduced_coordinates")
     plot_estimate(
         page, "e_2", page["A_cl"], (page["T"].inverse.value).select(range(order), range(order - estimated, order))

@@ -83,7 +83,7 @@ def _write_structured(page: Builder, design: GainDesign, side: PlacementProblem)
         return False
     gain = page.define(side.gain, gain_letters(page, side.gain, value, _is_zero), say="structured_gain")
     closed = side.closed_loop_matrix(page)
-    page.equal(relation(closed, spread(page, closed.value)), say="structured_matrix")
+    page.equal(relation(closed, spread(page, closed.value)))
     factors = Factored(Scalar.of(1), tuple(parts))
     page.equal(
         relation(side.error_determinant(page), page.term(formula_of_factored(factors))), say="polynomial_of_unknown"
