@@ -417,7 +417,7 @@ class Ideal:
     def simplified(self, value: Scalar) -> Scalar:
         """Return a rational function that agrees with `value` wherever the ideal vanishes, in normal form.
 
-        Where that would be longer, or divide by 0, the value stays as it is, and where it would have fewer factors: modulo
+        Where that would be longer, or divide by 0, the value stays as it is, and where a square would be hidden: modulo
         cos² + sin² − 1 a product (a + cos)² (a − cos) may be a polynomial without factors.
         """
         if not self.generators:
@@ -426,8 +426,18 @@ class Ideal:
         if below.is_zero or one.is_zero:
             return value
         found = above / below
-        is_shorter = found.size <= value.size and not (found and _loses_factors(value, found))
-        return found if is_shorter else value
+        return found if found.size <= value.size and not self._hides_a_square(value, found) else value
+
+    def _hides_a_square(self, value: Scalar, found: Scalar) -> bool:
+        """Return whether a value with cosines or sines has a factor twice, and what agrees with it has fewer factors."""
+        kinds = {f.kind for name in value.numerator.names if (f := function_named(name)) is not None}
+        if found.is_constant or kinds.isdisjoint({"cos", "sin"}):
+            return False
+        factors = value.numerator.factors()[1]
+        if all(power == 1 for _, power in factors):
+            return False
+        before = sum(power for factor, power in factors if not self.simplified(factor).is_constant)
+        return before > sum(power for _, power in found.numerator.factors()[1])
 
     @cached_property
     def _bounds(self) -> tuple[int, ...] | None:
@@ -482,15 +492,6 @@ class Ideal:
 
     def _back(self, polynomial: fmpz_mpoly) -> Scalar:
         return Scalar(self.field, self.field.normal(polynomial.project_to_context(self.field.context)), self.field.one)
-
-
-def _loses_factors(value: Scalar, found: Scalar) -> bool:
-    """Return whether a value with cosines or sines has more factors than what agrees with it."""
-    kinds = {f.kind for name in value.numerator.names if (f := function_named(name)) is not None}
-    if kinds.isdisjoint({"cos", "sin"}):
-        return False
-    before, after = (sum(power for _, power in each.numerator.factors()[1]) for each in (value, found))
-    return before > after
 
 
 def _pure_power(leading: Sequence[tuple[int, ...]], place: int) -> int | None:
