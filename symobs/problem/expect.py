@@ -407,7 +407,8 @@ def _with_member(result: Answered, name: str, entry: Any, where: str) -> Answere
 
 def unreadable(expect: Mapping[str, Any], names: Any, variable: str) -> list[SymobsError]:
     """Return the errors of expected answers that are not expressions, without solving."""
-    known = None if names is None else {**names, variable: "real", "t": "real", "t0": "real", "t1": "real"}
+    time = "k" if variable == "z" else "t"
+    known = None if names is None else {**names, **dict.fromkeys((variable, time, "t0", "t1"), "real")}
     errors: list[SymobsError] = []
     waiting: list[tuple[str, Any]] = [("expect", expect)]
     while waiting:
@@ -421,8 +422,8 @@ def unreadable(expect: Mapping[str, Any], names: Any, variable: str) -> list[Sym
             try:
                 for part in (sides[1], sides[3]) if sides else (value,):
                     if part.lstrip().startswith("[") or _FUNCTION.search(part):
-                        others = known and {name: sign for name, sign in known.items() if name != "t"}
-                        parse_matrix(part, others, variable="t", where=where, functions=True)
+                        others = known and {name: sign for name, sign in known.items() if name != time}
+                        parse_matrix(part, others, variable=time, where=where, functions=True)
                     else:
                         parse_poles(part, known, where=where)
             except SymobsError as error:
@@ -462,8 +463,8 @@ def names_of(result: Answered) -> Any:
     else:
         used = {name for value in exact for name in value.names} - {plant.variable}
     used = {name for name in used if name.isidentifier()}  # generators such as exp(-t) are no names
-    if result.in_time:  # t is the variable there
-        used -= {"t"}
+    if result.in_time:
+        used -= {result.argument}
     return {**dict.fromkeys(sorted(used), "real"), **declared}
 
 
@@ -485,9 +486,10 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     fields = [result.plant.field, *([found.field] if isinstance(found, (Matrix, Scalar)) else [])]
     has_functions = any(not function.square for field in fields for function in field.functions.values())
     if in_time and isinstance(found, (Matrix, Scalar)):
-        names = names and {name: sign for name, sign in names.items() if name != "t"}
+        time = result.argument if result.in_time else "t"
+        names = names and {name: sign for name, sign in names.items() if name != time}
         read = parse_matrix if isinstance(found, Matrix) else parse_scalar
-        return functions_agree(read(expected, names, variable="t", where=where, functions=True, rounding=True), found)
+        return functions_agree(read(expected, names, variable=time, where=where, functions=True, rounding=True), found)
     if isinstance(found, Matrix):
         known = names if names is None or variable not in found.names else {**names, variable: "real"}
         if has_functions:
@@ -553,7 +555,8 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where:
         return sorted(found) == sorted(expected)
     if result.in_time and all(isinstance(entry, Scalar) for entry in found):
         read = [
-            parse_scalar(entry, names, variable="t", where=where, functions=True, rounding=True) for entry in expected
+            parse_scalar(entry, names, variable=result.argument, where=where, functions=True, rounding=True)
+            for entry in expected
         ]
         return len(read) == len(found) and all(map(functions_agree, read, found))
     if all(isinstance(entry, Scalar) for entry in found):

@@ -56,17 +56,23 @@ def has_decimals(value: object) -> bool:
 
 
 def read_matrix(
-    value: object, symbols: Symbols, where: str, beside: Sequence[object] = (), *, functions: bool = False
+    value: object,
+    symbols: Symbols,
+    where: str,
+    beside: Sequence[object] = (),
+    *,
+    variable: str | None = None,
+    functions: bool = False,
 ) -> Matrix:
     """Return the exact matrix of a text, nested lists (numbers, texts, SymPy expressions) or a SymPy matrix.
 
     That of a text stands in one context with the matrices of the texts `beside` it.  With `functions`, functions of
-    parameters are read as generators.
+    parameters are read as generators, and of the variable k powers, too.
     """
     if isinstance(value, Matrix):
         return value
     if isinstance(value, str):
-        return parse_matrix(value, symbols.names, where=where, beside=beside, functions=functions)
+        return parse_matrix(value, symbols.names, variable=variable, where=where, beside=beside, functions=functions)
     if is_sympy(value) and hasattr(value, "tolist") and len(getattr(value, "shape", ())) == 2:
         from symobs.exact.sympy_bridge.conversion import matrix_from_sympy  # noqa: PLC0415
 
@@ -75,7 +81,7 @@ def read_matrix(
         value = _from_numpy(value, where)
     if isinstance(value, Sequence) and sympy_symbols(value) | ({"": 0} if _any_sympy(value) else {}):
         return _mixed_rows(value, symbols, where, functions=functions)
-    return parse_matrix(value, symbols.names, where=where, functions=functions)
+    return parse_matrix(value, symbols.names, variable=variable, where=where, functions=functions)
 
 
 def _any_sympy(value: object) -> bool:

@@ -219,7 +219,7 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
         return _without_coordinates(value, right, judged.letter) if isinstance(right, Matrix) else Explained()
     if isinstance(right, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
         value = value[0, 0]
-    variable = "t" if view.in_time else view.plant.variable
+    variable = view.argument
     in_loop = (view.task, judged.name) == ("compensator", "F")
     others = other_values(judgement.right) if in_loop else []
     return explain_value(value, right, judged.letter, variable, others, rounded=judged.rounded, in_loop=in_loop)

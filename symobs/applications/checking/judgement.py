@@ -72,7 +72,7 @@ def as_asked(view: ResultInConvention, letter: str, value: Any) -> Any:
 def _known(view: ResultInConvention) -> tuple[set[str], str]:
     """Return the names that an answer may use, and the variable among them."""
     parameters = getattr(getattr(view.result, "question", None), "parameters", ())
-    variable = "t" if view.in_time else view.plant.variable
+    variable = view.argument
     return {*view.plant.symbols.signs, *parameters, variable}, variable
 
 
@@ -656,7 +656,7 @@ def _judged(task: _Task, part: Judged) -> Judged:
 
 def _value(task: _Task, part: Judged) -> Matrix | Scalar | None:
     """Return the value of a part as a matrix or a number."""
-    variable = "t" if task.view.in_time else task.view.plant.variable
+    variable = task.view.argument
     if task.right.plant.is_time_varying:
         return None
     return read_like(found_in(task.right, part.name), part.given, task.names, variable, part.letter)

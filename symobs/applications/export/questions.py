@@ -116,7 +116,7 @@ def exported_part(view: ResultInConvention, field: str, name: str, weight: str) 
         "weight": weight,
         "function": False,
     }
-    made["variable"] = "t" if view.in_time else view.plant.variable
+    made["variable"] = view.argument
     if field == "verdict":
         word = view.result.verdict
         if word == "undecided":

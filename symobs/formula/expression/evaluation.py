@@ -13,6 +13,7 @@ from symobs.exact.algebraic.real_algebraic import root_of_fraction
 from symobs.exact.algebraic.rounded_decimals import root_in_field
 from symobs.exact.core import generators
 from symobs.exact.core.generators import PI
+from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.formula.expression.names import FUNCTIONS, NAME, refusal
 from symobs.formula.expression.source import (
     MOST_EXPONENT,
@@ -211,6 +212,7 @@ class Evaluator:
         self.source = source
         self.meter = scope.meter
         self.functions, self.roots = scope.functions, scope.roots
+        self.instant = "k" if scope.functions and scope.variable == "k" else ""
         self.names = scope.names or {}
 
     def entry(self, tree: SyntaxNode) -> Entry:
@@ -276,6 +278,8 @@ class Evaluator:
         if self.functions and isinstance(base, Scalar) and not base.is_constant and (half := _halves(value)):
             whole = self._power(base, place, Scalar.of((half - 1) // 2))  # x^(q + 1/2) is x^q times the root of x
             return self._combined(whole, place, self._function("sqrt", place, base), "*")
+        if self.instant and isinstance(value, Scalar) and self.instant in value.names:
+            return self._power_in_steps(base, place, value)
         exponent = self._exponent(value, place)
         if isinstance(base, Complex):
             return self._complex_power(base, exponent, place)
@@ -283,6 +287,15 @@ class Evaluator:
             self._require_nonzero(base, place)
         self._spend(power_size(base, exponent), place)
         return base**exponent
+
+    def _power_in_steps(self, base: Number, place: int, value: Scalar) -> Number:
+        """Return λ to the power m k + n, with numbers m and n, as a function of k."""
+        slope, *rest = value.coefficients(self.instant)
+        if len(rest) != 1 or isinstance(base, Complex) or self.instant in base.names:
+            instead = "write λ**(m*k + n) with numbers m and n, and a real λ without k"
+            raise self.source.error(f"the exponent {shown(str(value))} is no number of steps", place, instead)
+        often, beyond = self._power(base, place, slope), self._power(base, place, rest[0])
+        return self._combined(PowerOf.of("power", often), place, beyond, "*")  # type: ignore[arg-type]
 
     def _call(self, call: SyntaxNode, number: Number) -> Number:
         """Return the value of a call: sqrt of a number, cos and sin of a multiple of π.

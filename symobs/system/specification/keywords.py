@@ -21,10 +21,8 @@ from symobs.exact.core.generators import (
     identities,
     roots_in,
     square_root,
-    substitute,
     symbols_in,
 )
-from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.formula.expression import comma_between_digits, declared_name, parse_matrix, parse_poles, parse_polynomial
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ShapeMismatch
@@ -619,37 +617,26 @@ def parse_signal(value: object, symbols: Symbols, where: str, *, functions: bool
     known = symbols.seen(value, "t").with_time()
     if not functions:
         return read_matrix(listed, known, where)
-    rows: Any = listed.tolist() if hasattr(listed, "tolist") else listed
+    rows = _in_texts(listed)
     if not isinstance(rows, str):
-        rows = [[_text(entry) for entry in (row if isinstance(row, (list, tuple)) else [row])] for row in rows]
+        rows = [row if isinstance(row, list) else [row] for row in rows]
     return parse_matrix(rows, known.names, where=where, functions=True)
 
 
-#: A number, a name or a parenthesis to the power k.
-_POWER = re.compile(r"(\d+(?:\.\d+)?|[A-Za-z]\w*|\([^()]*\))\s*(?:\^|\*\*)\s*k\b")
+def _in_texts(listed: Any) -> Any:
+    """Return nested lists or a matrix with the texts of SymPy's expressions for these."""
+    rows = listed.tolist() if hasattr(listed, "tolist") else listed
+    if isinstance(rows, str):
+        return rows
+    return [[_text(entry) for entry in row] if isinstance(row, (list, tuple)) else _text(row) for row in rows]
 
 
 def parse_in_steps(value: object, symbols: Symbols, where: str) -> Matrix:
     """Return the entries of a signal in discrete time, a column for each instant or expressions in k with powers λᵏ."""
-    known, powers = symbols.seen(value, "k").naming(["k"], where), dict[str, str]()
-
-    def named(found: re.Match[str]) -> str:
-        name = f"power_{len(powers)}"
-        powers[name] = found[1]
-        return f"({name})"
-
-    def lettered(given: object) -> object:
-        """Return a text, or each of several, with a letter for each power to the k."""
-        if isinstance(given, (list, tuple)):
-            return [lettered(entry) for entry in given]
-        return _POWER.sub(named, given) if isinstance(given, str) else given
-
-    read = lettered(value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]])
+    read = value if isinstance(value, (str, list, tuple)) or hasattr(value, "shape") else [[value]]
     if isinstance(read, str) and not read.lstrip().startswith("["):
         read = f"[{read}]" if "," in read else [[read]]
-    table = read_matrix(as_rows("C", read), known.naming(list(powers), where), where, functions=True)
-    bases = {name: read_matrix([[text]], known, where)[0, 0] for name, text in powers.items()}
-    return substitute(table, {name: PowerOf.of("power", base) for name, base in bases.items()})
+    return read_matrix(as_rows("C", _in_texts(read)), symbols.seen(value, "k"), where, variable="k", functions=True)
 
 
 def _text(entry: object) -> object:

@@ -71,6 +71,11 @@ class ResultInConvention:
         return self.result.in_time
 
     @property
+    def argument(self) -> str:
+        """What the answers are functions of."""
+        return self.result.argument
+
+    @property
     def holds_where(self) -> tuple[Condition, ...]:
         """The result's conditions."""
         return self.result.holds_where

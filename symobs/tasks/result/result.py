@@ -75,6 +75,12 @@ class Result(TaskTraits):
     #: Whether the answers are functions of time, or of a horizon.
     in_time: ClassVar[bool] = False
 
+    @property
+    def argument(self) -> str:
+        """What answers are functions of: t or k where they are functions of time, else the variable of polynomials."""
+        in_time = "k" if self.plant.is_discrete else "t"
+        return in_time if self.in_time else self.plant.variable
+
     def __post_init__(self) -> None:
         """Check every claim; raises `CertificateRejected`."""
         object.__setattr__(self, "answer", MappingProxyType(dict(self.answer)))

@@ -12,6 +12,7 @@ import symobs
 from symobs import StateSpace
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.problem import read
+from symobs.problem.expect import mismatches
 from symobs.problem.question import question_of
 from symobs.tasks.result import render
 from tests.support.sampling import seeds
@@ -135,3 +136,20 @@ def test_values_and_questions_read_what_the_task_reads() -> None:
     assert list(samples.at(y=3).x0) == [1, 3]
     text = 'task = "response"\n[plant]\nA = "[1/2]"\nB = "[1]"\ndt = true\n[specification]\ninput = "1, 0, 2"\n'
     assert "The input from k = 0 on is [1 0 2]" in str(render(question_of(read(text)), "text"))
+
+
+@pytest.mark.parametrize(
+    ("entry", "is_met"), [("3^k-2^k", True), ("3*3^(k-1) - 2^(k+1)/2", True), ("3^k-2^(2*k)", False)]
+)
+def test_powers_of_k_are_read_where_an_answer_is_expected(entry: str, is_met: bool) -> None:  # noqa: FBT001
+    """By hand: A = [2 1; 0 3] has Aᵏ = [2ᵏ, 3ᵏ − 2ᵏ; 0, 3ᵏ]."""
+    text = f'task = "matrix_exponential"\n[plant]\nA = "[2 1; 0 3]"\ndt = true\n[expect]\nmatrix = "[2^k {entry}; 0 3^k]"\n'
+    found = read(text)
+    assert (not mismatches(found.solve(), found.expect)) == is_met
+
+
+def test_an_exponent_that_is_no_number_of_steps_is_refused() -> None:
+    plant = StateSpace("[1/2]", "[1]", "[1]", dt=True)
+    for given in ("2^(k^2)", "k^k", "i^k"):
+        with pytest.raises(InputError, match="is no number of steps"):
+            symobs.response(plant, input=given)
