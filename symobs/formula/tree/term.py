@@ -91,6 +91,12 @@ class Term:
         return self._with(Transpose(self.formula))
 
     @property
+    def pencil(self) -> Term:
+        """The matrix pencil sI − M."""
+        order = self.value.shape[0]
+        return self._with(Product((Letter("s"), Identity(order)))) - self
+
+    @property
     def derivative(self) -> Term:
         """d/dt, or the shift."""
         return self._with(Derivative(self.formula))

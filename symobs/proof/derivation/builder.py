@@ -270,10 +270,6 @@ class Builder:
         """The variable."""
         return self.term(Letter("s"))
 
-    def resolvent(self, matrix: Term, order: int) -> Term:
-        """Return sI − M for a sum M, its signs turned."""
-        return self.s @ self.identity(order) - matrix
-
     def defines(self, name: str) -> bool:
         """Return whether a letter is established."""
         return self.environment.defines(name)

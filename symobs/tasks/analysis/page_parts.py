@@ -234,7 +234,7 @@ def _hold_to_letters(page: Builder, by: str) -> None:
         output = page["C"] @ x + page["D"] @ u if m.has_feedthrough else page["C"] @ x
         facts.append(relation(page["y"], output))
     if page.plant.origin is not None:
-        resolvent = (page.s @ page.identity(page.plant.order) - page["A"]).inverse
+        resolvent = page["A"].pencil.inverse
         response = page["C"] @ resolvent @ page["B"]
         facts.append(relation(page["P"], response + page["D"] if m.has_feedthrough else response))
     page.conclude_silently(*facts)

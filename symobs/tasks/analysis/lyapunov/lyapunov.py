@@ -325,7 +325,7 @@ def _tell_uniqueness(page: Builder, result: LyapunovSolution) -> None:
     polynomial = plant.matrices.A.characteristic_polynomial(plant.variable)
     page.define(
         "chi",
-        page.resolvent(A, plant.order).apply("det"),
+        A.pencil.apply("det"),
         page.value(polynomial),
         say="lyapunov_polynomial",
         closing=False,

@@ -275,8 +275,8 @@ class ModeResult(Result):
         A, _ = self.test.pair(self.plant)
         order, X = self.plant.order, self.test.answer["restricted"]
         e = Environment(variable=self.plant.variable, values={"A": A, "X": X, "chi": self.answer["polynomial"]})
-        chi, s = e["chi"], e["s"]
-        yield Claim(relation((s @ identity(order, e) - e["A"]).apply("det"), chi), e)
+        chi = e["chi"]
+        yield Claim(relation(e["A"].pencil.apply("det"), chi), e)
         form = Factored(Scalar.of(1), tuple((part.factor, part.power) for part in self.spectrum))
         yield Claim(relation(chi, Term(formula_of_factored(form), e)), e, "chi = product of the factors")
         counts = len(self.answer["ranks"]), len(self.answer["constancy"])
@@ -285,7 +285,7 @@ class ModeResult(Result):
             yield from self._rank_claims(part, found, e)
             if where is not None:
                 yield from constancy_claims(where, X, part.factor, order - found, self.plant)
-        fixed = (s @ identity(X.shape[0], e) - e["X"]).apply("det") if X.shape[0] else Term(Literal(Scalar.of(1)), e)
+        fixed = e["X"].pencil.apply("det") if X.shape[0] else Term(Literal(Scalar.of(1)), e)
         yield Claim(relation(fixed, self.answer["fixed_polynomial"]), e, "det(s*I - X) = fixed_polynomial")
 
     def _rank_claims(self, part: Eigenvalues, found: int, e: Environment) -> Iterator[Claim]:
@@ -401,7 +401,7 @@ class ModeResult(Result):
 def show_spectrum(page: Builder, result: ModeResult) -> None:
     """Write χ with its factors, and its roots."""
     plant, chi = page.plant, result.answer["polynomial"]
-    pencil = page.s @ page.identity(plant.order) - page["A"]
+    pencil = page["A"].pencil
     form = factored(chi, plant.variable)
     product = page.term(formula_of_factored(form))
     members = [pencil.apply("det"), page.value(chi)]

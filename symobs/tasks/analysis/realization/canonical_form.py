@@ -101,7 +101,7 @@ class CanonicalForm(Result):
         m, answer, n = self.plant.matrices, self.answer, self.plant.order
         chi = answer["polynomial"]
         e = Environment(variable=self.plant.variable, values={"A": m.A, "chi": chi})
-        yield Claim(relation((e["s"] @ identity(n, e) - e["A"]).apply("det"), e["chi"]), e)
+        yield Claim(relation(e["A"].pencil.apply("det"), e["chi"]), e)
         if answer["T"] is None:
             rank = self.test.answer["rank"] if self.test is not None else n
             yield Claim(relation(rank, "<", n), e, "the pair does not have full rank")
@@ -185,7 +185,7 @@ class CanonicalForm(Result):
         given(page)
         with page.section("canonical_form"):
             chi = factored(self.answer["polynomial"], self.plant.variable)
-            members = [(page.s @ page.identity(self.plant.order) - page["A"]).apply("det")]
+            members = [page["A"].pencil.apply("det")]
             members.append(page.value(self.answer["polynomial"]))
             if self.kind == "modal" and (len(chi.factors) > 1 or chi.factors[0][1] > 1):
                 members.append(page.term(formula_of_factored(chi)))

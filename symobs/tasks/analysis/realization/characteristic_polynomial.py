@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Factored, Scalar, factored, roots_of
 from symobs.formula.tree import Environment, Roots
-from symobs.formula.tree.term import Term, identity
+from symobs.formula.tree.term import Term
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
@@ -34,7 +34,7 @@ class CharacteristicPolynomial(Result):
         """Yield det(sI − A) = χ(s) = product of the factors."""
         values = {"A": self.plant.matrices.A, "chi": self.answer["polynomial"]}
         e = Environment(variable=self.plant.variable, values=values)
-        pencil = e["s"] @ identity(self.plant.order, e) - e["A"]
+        pencil = e["A"].pencil
         form: Factored = self.answer["factors"]
         product = Term(formula_of_factored(form), e)
         yield Claim(relation(pencil.apply("det"), e["chi"]), e)
@@ -58,7 +58,7 @@ class CharacteristicPolynomial(Result):
         given(page)
         polynomial: Scalar = self.answer["polynomial"]
         with page.section("characteristic_polynomial"):
-            pencil = page.s @ page.identity(self.plant.order) - page["A"]
+            pencil = page["A"].pencil
             members = [pencil.apply("det"), pencil.as_value.apply("det"), page.value(polynomial)]
             form: Factored = self.answer["factors"]
             if len(form.factors) > 1 or form.factors[0][1] > 1:

@@ -147,11 +147,11 @@ class Decomposition(Result):
         A1 = self.answer["A"].select(first, first)
         B1, C1 = self.answer["B"].select(first, inputs), self.answer["C"].select(outputs, first)
         e = e.extended_by(values={"P": self.answer["transfer_function"], "A_co": A1, "B_co": B1, "C_co": C1})
-        s, P = e["s"], e["P"]
-        whole = (s @ identity(self.plant.order, e) - e["A"]).inverse
+        P = e["P"]
+        whole = e["A"].pencil.inverse
         yield Claim(relation(P, e["C"] @ whole @ e["B"] + e["D"]), e)
         if first:
-            own = (s @ identity(len(first), e) - e["A_co"]).inverse
+            own = e["A_co"].pencil.inverse
             yield Claim(relation(P, e["C_co"] @ own @ e["B_co"] + e["D"]), e)
         else:
             yield Claim(relation(P, e["D"]), e)
@@ -244,7 +244,7 @@ class Decomposition(Result):
         P: Matrix = self.answer["transfer_function"]
         value = factored_form(page, P[0, 0]) if P.shape == (1, 1) else page.value(P)
         direct = page["D"] if self.plant.matrices.has_feedthrough else None
-        resolvent = (page.s @ page.identity(self.plant.order) - page["A"]).inverse
+        resolvent = page["A"].pencil.inverse
         whole = page["C"] @ resolvent @ page["B"]
         whole = whole + direct if direct is not None else whole
         if not first:
@@ -254,7 +254,7 @@ class Decomposition(Result):
         page.set("A_co", self.answer["A"].select(first, first))
         page.set("B_co", self.answer["B"].select(first, m))
         page.set("C_co", self.answer["C"].select(p, first))
-        own = page["C_co"] @ (page.s @ page.identity(len(first)) - page["A_co"]).inverse @ page["B_co"]
+        own = page["C_co"] @ page["A_co"].pencil.inverse @ page["B_co"]
         own = own + direct if direct is not None else own
         page.define("P", whole, own, value, say="minimal_part", answer=True, closing=False)
 

@@ -21,7 +21,7 @@ from symobs.exact import (
 from symobs.exact.core.generators import NotWritten
 from symobs.exact.linear_algebra.transfer_function import minors
 from symobs.formula.tree import Environment, Evaluated, Literal, Quotient, Roots
-from symobs.formula.tree.term import Term, block, identity
+from symobs.formula.tree.term import Term, block
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
@@ -53,7 +53,7 @@ class TransferFunction(Result):
         m = self.plant.matrices
         values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D, "P": self.answer["transfer_function"]}
         e = Environment(variable=self.plant.variable, values=values)
-        resolvent = (e["s"] @ identity(self.plant.order, e) - e["A"]).inverse
+        resolvent = e["A"].pencil.inverse
         response = e["C"] @ resolvent @ e["B"]
         if m.has_feedthrough:
             response = response + e["D"]
@@ -187,7 +187,7 @@ class TransferFunction(Result):
         m, variable = page.plant.matrices, self.plant.variable
         with page.section("transfer_function"):
             A, B, C = page["A"], page["B"], page["C"]
-            pencil = page.s @ page.identity(self.plant.order) - A
+            pencil = A.pencil
             characteristic = m.A.characteristic_polynomial(variable)
             adjugate = page.value(pencil.value.adjugate())
             one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
@@ -243,7 +243,7 @@ class TransferFunction(Result):
     def write_form(self, page: Builder) -> None:
         """Write the function in lowest terms, its poles and zeros, in a case."""
         P: Scalar | Matrix = self.answer["transfer_function"]
-        response = page["C"] @ (page.s @ page.identity(self.plant.order) - page["A"]).inverse @ page["B"]
+        response = page["C"] @ page["A"].pencil.inverse @ page["B"]
         if self.plant.matrices.has_feedthrough:
             response = response + page["D"]
         shown = page.value(P) if isinstance(P, Matrix) else factored_form(page, P)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from symobs.exact import Scalar
 from symobs.exact.core.generators import function_named
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.proof.certificate.claims import Claim, Statement
@@ -430,7 +429,7 @@ class StabilityRegion(Result):
         values |= {"K": question.K, "B": m.B} if question.K is not None else {}
         values |= {"L": question.L, "C": m.C} if question.L is not None else {}
         e = Environment(variable=plant.variable, values=values)
-        pencil = e["s"] @ identity(plant.order, e) - e["A"]
+        pencil = e["A"].pencil
         moved = [pencil + e["B"] @ e["K"]] if question.K is not None else []
         moved += [pencil + e["L"] @ e["C"]] if question.L is not None else []
         product = (moved or [pencil])[0].apply("det")

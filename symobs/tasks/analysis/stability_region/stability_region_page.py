@@ -82,12 +82,12 @@ def _say_open_loop(page: Builder, result: StabilityRegion) -> None:
 
 def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
     """Establish the gains and the characteristic polynomial; return its letter."""
-    question, order = result.question, result.plant.order
+    question = result.question
     chi: Scalar = result.answer["polynomial"]
     for name, gain in (("K", question.K), ("L", question.L)):
         if gain is not None:
             page.define(name, gain, say="gain_open", closing=False)
-    pencil = page.s @ page.identity(order) - page["A"]
+    pencil = page["A"].pencil
     moved = {
         "chi_K": pencil + page["B"] @ page["K"] if question.K is not None else None,
         "chi_L": pencil + page["L"] @ page["C"] if question.L is not None else None,

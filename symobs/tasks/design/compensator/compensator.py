@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Self
 from symobs.exact import Matrix, Scalar, controller, modulo, transfer
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, together
 from symobs.proof.certificate.claims import Claim
@@ -78,7 +77,7 @@ class CompensatorDesign(OutputFeedback):
         yield from self.certified(e)
         if self.exists:
             A, B, C, D, K, L, F = (e[name] for name in "ABCDKLF")
-            moved = e["s"] @ identity(self.plant.order, e) - A + B @ K + L @ C
+            moved = A.pencil + B @ K + L @ C
             if self.plant.matrices.has_feedthrough:
                 moved = moved - L @ D @ K
             yield Claim(relation(F, K @ moved.inverse @ L), e)

@@ -87,7 +87,7 @@ class MinimalOrderCompensator(OutputFeedback):
             yield Claim(relation((one - N @ D).apply("det"), 0), e, "det(I - N*D) = 0")
             return
         F_z, G, H = (e[name] for name in ("F_z", "G_z", "H_z"))
-        resolvent = (e["s"] @ identity(self.plant.order - self.plant.outputs, e) - F_z).inverse
+        resolvent = F_z.pencil.inverse
         loop = one + K_2 @ resolvent @ G
         if self.plant.matrices.has_feedthrough:
             loop = loop - N @ D

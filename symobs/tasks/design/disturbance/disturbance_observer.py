@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.exact import Matrix, modulo, rank, roots_of
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment, Literal, Roots
-from symobs.formula.tree.term import Term, block, identity
+from symobs.formula.tree.term import Term, block
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Certificate, Claim
@@ -120,10 +120,9 @@ class DisturbanceObserver(Result):
         if L_x is not None:
             both = block([[e["L_x"]], [e["L_w"]]])
             yield Claim(relation(both, self.inner.answer["L"]), e, "[L_x; L_w] = L")
-            order = plant.order + self.exosystem.order
             seen = block([[e["L_x"] @ e["C"]], [e["L_w"] @ e["C"]]])
             wide = Matrix.block([[Matrix.identity(plant.order), Matrix.zeros(plant.order, self.exosystem.order)]])
-            pencil = e["s"] @ identity(order, e) - whole + seen @ Term(Literal(wide), e)
+            pencil = whole.pencil + seen @ Term(Literal(wide), e)
             yield Claim(relation(pencil.apply("det"), e["phi"]), e, "det(s*I - A_hat + L*C_hat) = phi")
 
     @property
@@ -355,10 +354,9 @@ def write_gain_of_both(page: Builder, design: DisturbanceObserver) -> None:
         page.conclude("disturbance_observable", rank=relation(tested.apply("rank"), order))
         _zeros(page, design)
     else:
-        count = pair.kernel.shape[1]
         page.set("N", pair.kernel)
         X = page.set("X", pair.restricted)
-        fixed = (page.s @ page.identity(count) - X).apply("det")
+        fixed = X.pencil.apply("det")
         roots = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, plant.variable))
         if design.answer["L_x"] is None:
             keys, polynomial = ("disturbance_impossible", "disturbance_unassignable"), design.desired.polynomial
@@ -367,7 +365,7 @@ def write_gain_of_both(page: Builder, design: DisturbanceObserver) -> None:
             return
         page.conclude("disturbance_fixed", predicate("polynomial", page["phi_o"] / fixed), modes=roots)
     L = define_gain(page, "L", design.inner.answer["L"], say="disturbance_gain")
-    pencil = (page.s @ page.identity(order) - A + L @ C).apply("det")
+    pencil = (A.pencil + L @ C).apply("det")
     say_as_required(page, design.desired, pencil, page.value(design.desired.polynomial))
     caution_poles(page, design.desired, "phi_o", "observer")
     if not design.desired.is_numeric:

@@ -191,7 +191,7 @@ class UnknownInputObserver(Result):
             driven = T @ e["B"]
             driven = driven - B_y @ e["D"] if m.has_feedthrough else driven
             yield Claim(relation(e["B_u"], driven), e, "B_u = T*B - B_y*D")
-        pencil = e["s"] @ identity(plant.order, e) - F
+        pencil = F.pencil
         yield Claim(relation(pencil.apply("det"), e["phi"]), e, "det(s*I - F) = phi(s)")
 
     @property
@@ -453,10 +453,9 @@ def _zeros(page: Builder, design: UnknownInputObserver) -> None:
         assume_rank(page, "uio_provided", design.inner.test, design)
         page.conclude("uio_observable", rank=relation(tested.apply("rank"), plant.order))
         return
-    count = pair.kernel.shape[1]
     page.set("N", pair.kernel)
     X = page.set("X", pair.restricted)
-    fixed = (page.s @ page.identity(count) - X).apply("det")
+    fixed = X.pencil.apply("det")
     zeros = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, plant.variable))
     if design.answer["L"] is not None:
         page.conclude("uio_zeros_desired", predicate("polynomial", page["phi_o"] / fixed), zeros=zeros)
@@ -481,7 +480,7 @@ def _gain(page: Builder, design: UnknownInputObserver) -> None:
     F = page.define("F_d", state, *shown[0], say="uio_state_matrix", closing=False)
     page.define("L_y", page["L"] + F @ page["H_d"], *shown[1], closing=False)
     page.conclude_silently(*(relation(page[name], design.answer[of]) for name, of in _LETTERS.items()))
-    pencil, asked = (page.s @ page.identity(page.plant.order) - F).apply("det"), design.desired
+    pencil, asked = F.pencil.apply("det"), design.desired
     say_as_required(page, asked, pencil, page.value(asked.polynomial))
     caution_poles(page, asked, "phi_o", "observer")
     if not asked.is_numeric:

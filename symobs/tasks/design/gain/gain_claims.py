@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, independent_rows
 from symobs.formula.tree import Environment, Literal
-from symobs.formula.tree.term import Term, identity
+from symobs.formula.tree.term import Term
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
@@ -28,7 +28,7 @@ def unassignable_claims(pair: ObserverPair, polynomial: Scalar) -> Iterator[Clai
     values: dict[str, Scalar | Matrix] = {"A": pair.A, "C": pair.c, "N": N, "X": X, "phi": polynomial}
     e = Environment(variable=pair.variable, values=values)
     A, C, kernel, restricted = (e[name] for name in ("A", "C", "N", "X"))
-    pencil = e["s"] @ identity(X.shape[0], e) - restricted
+    pencil = restricted.pencil
     yield Claim(relation(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1])), e, "C*N = 0")
     yield Claim(relation(A @ kernel, kernel @ restricted), e, "A*N = N*X")
     yield Claim(relation(N.shape[1], X.shape[0], "!==", 0), e, "X has the order of the kernel")

@@ -498,7 +498,7 @@ class PlacementProblem:
 
     def error_determinant(self, page: Builder) -> Term:
         """Return det(sI − A + LC) or det(sI − A + BK)."""
-        return (page.s @ page.identity(page.plant.order) - page["A"] + self._gain_term(page)).apply("det")
+        return (page["A"].pencil + self._gain_term(page)).apply("det")
 
     def _gain_term(self, page: Builder) -> Term:
         return page["L"] @ page["C"] if self.gain == "L" else page["B"] @ page["K"]

@@ -109,10 +109,10 @@ class Margins(Result):
         if self.written is not None:
             values |= {"B": m.B, "C": m.C, "D": m.D, "F": self.written.value, "q": _monic(self.written)[1]}
         e = Environment(variable=plant.variable, values=values)
-        whole = (e["s"] @ identity(plant.order, e) - e["A"]).apply("det")
+        whole = e["A"].pencil.apply("det")
         if self.design is not None:
             if own is not None:
-                inner = e["s"] @ identity(values["A_c"].shape[0], e) - e["A_c"]
+                inner = e["A_c"].pencil
                 whole = whole @ inner.apply("det")
             yield Claim(relation(e["chi_o"], whole), e, "P = det(s*I - A), times that of the compensator")
             yield Claim(
@@ -121,7 +121,7 @@ class Margins(Result):
         else:
             A, B, C, D, F = (e[name] for name in "ABCDF")
             yield Claim(relation(e["chi_o"], whole @ e["q"]), e, "P = det(s*I - A) times that of F")
-            G = C @ (e["s"] @ identity(plant.order, e) - A).inverse @ B + D
+            G = C @ A.pencil.inverse @ B + D
             one = identity(1, e)
             said = "P + N = P*(1 + F*G)"
             yield Claim(relation(e["chi_cl"] @ one, e["chi_o"] @ (one + F @ G)), e, said)
@@ -380,7 +380,7 @@ def write_margins(page: Builder, result: Margins) -> None:
 def _polynomials(page: Builder, result: Margins) -> None:
     """Write P and P + N."""
     plant, A, kind = page.plant, page["A"], None if result.design is None else result.design.task
-    pencil = page.s @ page.identity(plant.order) - A
+    pencil = A.pencil
     opened: Term = pencil.apply("det")
     closed: list[Term] = []
     if kind == "state_feedback":
@@ -390,7 +390,7 @@ def _polynomials(page: Builder, result: Margins) -> None:
     elif kind == "compensator":
         assert result.design is not None  # noqa: S101 - it is one
         own = page["A_c"] if page.defines("A_c") else page.set("A_c", result.design.fields["compensator_matrix"])
-        opened = opened @ (page.s @ page.identity(own.value.shape[0]) - own).apply("det")
+        opened = opened @ own.pencil.apply("det")
     else:
         assert result.written is not None  # noqa: S101 - the other way to a loop
         page.define("F", factored_form(page, result.written.value), say="margins_controller", closing=False)

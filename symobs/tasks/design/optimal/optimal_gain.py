@@ -209,7 +209,7 @@ class OptimalGain(Result):
         yield Claim(relation(e["row"] @ N, Matrix.zeros(row.shape[0], found.N.shape[1])), e, "N is hidden")
         yield Claim(relation(e["of"] @ N, N @ X), e, "N is invariant")
         yield Claim(relation(N.apply("rank"), found.N.shape[1]), e, "N has full rank")
-        pencil = e["s"] @ identity(found.X.shape[0], e) - X
+        pencil = X.pencil
         yield Claim(relation(pencil.apply("det"), found.polynomial), e, "the polynomial of the hidden modes")
         signs, variable, discrete = plant.symbols.signs, plant.variable, plant.is_discrete
         if found.kind == "uncontrollable":

@@ -26,7 +26,7 @@ from symobs.exact.time_functions.antiderivative import butterworth, butterworth_
 from symobs.formula.phrases import PHRASES
 from symobs.formula.phrases.languages import COUNTED
 from symobs.formula.tree import Environment, Literal
-from symobs.formula.tree.term import Term, identity
+from symobs.formula.tree.term import Term
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Claim
@@ -502,7 +502,7 @@ class AdvisedPoles(Result):
         yield Claim(relation(C @ N_, Matrix.zeros(1, size)), e, "C*N = 0")
         yield Claim(relation(A @ N_, N_ @ X_), e)
         yield Claim(relation(N_.apply("rank"), size), e)
-        pencil = e["s"] @ identity(size, e) - X_
+        pencil = X_.pencil
         yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
 
     # -- what follows ------------------------------------------------------------------------------------------------
@@ -556,7 +556,7 @@ class AdvisedPoles(Result):
 
 def numerator_term(e: Environment, plant: StateSpace) -> Term:
     """Return C adj(sI − A) B + D det(sI − A) as a formula."""
-    pencil = e["s"] @ identity(plant.order, e) - e["A"]
+    pencil = e["A"].pencil
     found = e["C"] @ pencil.apply("adj") @ e["B"]
     return found + e["D"] @ pencil.apply("det") if plant.matrices.has_feedthrough else found
 

@@ -255,7 +255,7 @@ def _zeros(page: Builder, advice: PoleAdvice) -> None:
         "b_P", numerator_term(page.environment, plant), factored_form(page, b), say="numerator_of_plant", closing=False
     )
     if not page.defines("P"):
-        chi = (page.s @ page.identity(plant.order) - page["A"]).apply("det")
+        chi = page["A"].pencil.apply("det")
         P = factored_form(page, b / plant.matrices.A.characteristic_polynomial(plant.variable))
         page.define("P", page["b_P"] / chi, P, say="transfer_from_numerator", closing=False)
     zeros = roots_of(b, plant.variable) if b.degree(plant.variable) > 0 else ()
@@ -350,7 +350,7 @@ def _polynomial(page: Builder, advice: PoleAdvice) -> None:
     if advice.request.radius is None or zeros.unused or not zeros.used or not advice.count:
         return
     if not plant.matrices.has_feedthrough:
-        pencil = (page.s @ page.identity(plant.order) - page["A"]).apply("adj")
+        pencil = page["A"].pencil.apply("adj")
         multiple = page["phi_z"] if zeros.unit.is_one else page.value(zeros.unit) @ page["phi_z"]
         page.equal(relation(page["C"] @ pencil @ page["B"], multiple), say="recovery")
 
@@ -359,7 +359,7 @@ def _caution(page: Builder, advice: PoleAdvice, warning: PoleWarning) -> None:
     """Say a warning, with what can be checked of it."""
     slots, n = dict(warning.slots), page.plant.order
     if warning.key == "always_unstable":
-        chi = (page.s @ page.identity(n) - page["A"]).apply("det")
+        chi = page["A"].pencil.apply("det")
         page.caution(warning.key, predicate("no_stable_compensator", page["b_P"] / chi))
     elif warning.key == "modes_missed":
         page.set("N", advice.pair.kernel)

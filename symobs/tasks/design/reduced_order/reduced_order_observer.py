@@ -215,8 +215,7 @@ class ReducedOrderObserver(Result):
                 driven = driven - H @ e["D"]
             yield Claim(relation(e["G"], driven), e, "G = P*B - H*D")
         yield Claim(relation(M @ block([[C], [P]]), identity(plant.order, e)), e, "M*[C; P] = I")
-        order = plant.order - plant.outputs
-        pencil = e["s"] @ identity(order, e) - F
+        pencil = F.pencil
         yield Claim(relation(pencil.apply("det"), e["phi"]), e, "det(s*I - F) = phi(s)")
 
     @property

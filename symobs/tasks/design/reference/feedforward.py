@@ -158,7 +158,7 @@ class FeedforwardDesign(Result):
         A_cl, K_e, nothing = zero["A_cl"], zero["K_e"], zero["O_e"]
         seen = block([[C - D @ K_, D @ K_e]])
         driven = block([[B @ F_], [nothing]])
-        whole = seen @ (zero["s"] @ identity(order + errors, zero) - A_cl).inverse @ driven + D @ F_
+        whole = seen @ A_cl.pencil.inverse @ driven + D @ F_
         yield Claim(relation(zero["T_v"], whole), zero, "the whole loop with its error responds alike")
 
     @property
@@ -388,7 +388,7 @@ def _impossible(page: Builder, design: FeedforwardDesign) -> None:
 
 def _response(page: Builder) -> Term:
     """Return C(sI − A)⁻¹B + D."""
-    resolvent = (page.s @ page.identity(page.plant.order) - page["A"]).inverse
+    resolvent = page["A"].pencil.inverse
     response = page["C"] @ resolvent @ page["B"]
     return response + page["D"] if page.plant.matrices.has_feedthrough else response
 
@@ -428,8 +428,8 @@ def _loop(page: Builder, design: FeedforwardDesign, *, minimal: bool) -> None:
     page.define("A_cl", block([[A - B @ K, B @ coupling], [zero, own]]), silent=True, closing=False)
     state, driven = block([[x], [error]]), block([[B @ F_v], [page.value(Matrix.zeros(errors, plant.outputs))]])
     page.conclude_silently(relation(state.derivative, page["A_cl"] @ state + driven @ v))
-    determinant = (page.s @ page.identity(plant.order + errors) - page["A_cl"]).apply("det")
-    of_rest = page.s @ page.identity(errors) - page["A_22"] + page["L"] @ page["A_12"] if minimal else None
+    determinant = page["A_cl"].pencil.apply("det")
+    of_rest = page["A_22"].pencil + page["L"] @ page["A_12"] if minimal else None
     of_error = OBSERVER.error_determinant(page) if of_rest is None else of_rest.apply("det")
     parts_of = FEEDBACK.error_determinant(page) @ of_error
     product = page.term(formula_of_factored(design.loop.loop_polynomial))
@@ -462,7 +462,7 @@ def _gain(page: Builder, design: FeedforwardDesign) -> None:
         page.equal(relation(F_v, G.T @ (G @ G.T).inverse, F_v.as_value), say="feedforward_smallest", answer=True)
     one = page.identity(plant.outputs) if plant.outputs > 1 else page.value(1)
     page.verified("as_required", check=relation(G @ F_v, one))
-    resolvent = (page.s @ page.identity(plant.order) - A + B @ K).inverse
+    resolvent = (A.pencil + B @ K).inverse
     response = C @ resolvent @ B @ F_v
     if m.has_feedthrough:
         response = (C - page["D"] @ K) @ resolvent @ B @ F_v + page["D"] @ F_v

@@ -143,7 +143,7 @@ class IntegralAction(Result):
             both = block([[e["K"], -e["k_I"]]])
             yield Claim(relation(both, self.loop.answer["K"]), e, "[K, -k_I] is the feedback of plant and integrator")
             closed = block(closed_loop(e, plant))
-            pencil = e["s"] @ identity(size, e) - closed
+            pencil = closed.pencil
             yield Claim(relation(pencil.apply("det"), self.answer["polynomial"]), e, "det(s*I - closed loop) = phi")
 
     @cached_property
@@ -409,7 +409,7 @@ def _impossible(page: Builder, design: IntegralAction) -> None:
     pair = design.loop.pair
     page.set("N_K", pair.kernel)
     X = page.set("X_K", pair.restricted)
-    fixed = (page.s @ page.identity(pair.kernel.shape[1]) - X).apply("det")
+    fixed = X.pencil.apply("det")
     say_unassignable(
         page,
         ("integral_impossible", "integral_unassignable"),
@@ -431,7 +431,7 @@ def _gains(page: Builder, design: IntegralAction) -> None:
     page.equal(relation(both, gain), say="hence_gain" if compared else "integral_gains")
     page.equal(relation(K, K.as_value), say="integral_parts", answer=True)
     page.equal(relation(k_I, k_I.as_value), answer=True)
-    pencil = page.s @ page.identity(plant.order + plant.outputs) - A_hat + B_hat @ both
+    pencil = A_hat.pencil + B_hat @ both
     page.verified("as_required", check=relation(pencil.apply("det"), page.value(design.desired.polynomial)))
     if not design.desired.is_numeric:
         say_stability(page, pencil.apply("det"))
@@ -444,7 +444,7 @@ def _compare(page: Builder, gain: Matrix, desired: DesiredPolynomial) -> bool:
     before = page.environment
     row = page.value(gain_letters(page, "K", gain))
     variable = page.plant.variable
-    loop = (page.s @ page.identity(len(gain.entries)) - page["A_hat"] + page["B_hat"] @ row).apply("det")
+    loop = (page["A_hat"].pencil + page["B_hat"] @ row).apply("det")
     coefficients = loop.scalar.coefficients(variable)
     if sum(coefficient.size for coefficient in coefficients) > OUTPUT_DERIVATIVE:
         page.environment = before
@@ -476,7 +476,7 @@ def _at_rest(page: Builder, design: IntegralAction) -> None:
     at_rest = relation(gain, Matrix.identity(plant.outputs))
     asked, discrete = design.desired, plant.is_discrete
     if asked.is_numeric and stability(asked.polynomial, plant.variable, {}, discrete=discrete).verdict == "yes":
-        loop = (page.s @ page.identity(size) - A_cl).apply("det")
+        loop = A_cl.pencil.apply("det")
         has_poles = relation(loop, page["phi_c"])
         page.conclude("integral_rest_stable", has_poles, predicate("stable", page["phi_c"]), gain=at_rest)
     else:

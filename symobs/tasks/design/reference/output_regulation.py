@@ -611,7 +611,7 @@ def _impossible(page: Builder, design: OutputRegulation) -> None:
     if not blocked:
         return
     roots = product_of(factor for factor, _ in blocked)
-    of_S = (page.s @ page.identity(q) - page["S_w"]).apply("det")
+    of_S = page["S_w"].pencil.apply("det")
     pencil = block([[page["A"] - page.s @ page.identity(n), page["B"]], [page["C"], D]])
     is_zero = rank(pencil.value, plant.ideal) == n + p
     page.conclude(
@@ -686,7 +686,7 @@ def _observer(page: Builder, design: OutputRegulation, estimator: DisturbanceObs
         block([[A - B @ K, through], [zero, page["A_hat"] - page["L"] @ page["C_hat"]]]),
         say="regulation_loop",
     )
-    whole = (page.s @ page.identity(order + design.plant.order) - page["A_cl"]).apply("det")
+    whole = page["A_cl"].pencil.apply("det")
     if design.loop.feedback.desired is None:
         return
     both = page["phi_c"] @ page["phi_o"]

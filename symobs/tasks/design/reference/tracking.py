@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar, independent_rows, solve_or_refute
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import block, identity
+from symobs.formula.tree.term import block
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Certificate, Claim
@@ -127,7 +127,7 @@ class TrackingDesign(Result):
         if self.has_gains:
             values = {"A_e": self.matrix_of_errors, "phi": self.loop.loop_polynomial.value}
             own = Environment(variable=self.plant.variable, values=values)
-            pencil = own["s"] @ identity(self.matrix_of_errors.shape[0], own) - own["A_e"]
+            pencil = own["A_e"].pencil
             yield Claim(relation(pencil.apply("det"), own["phi"]), own, "det(s*I - error matrix) = phi_c*phi_o")
 
     def _passed_through(self, e: Environment) -> Iterator[Claim]:
@@ -416,7 +416,7 @@ def _errors(page: Builder, design: TrackingDesign) -> None:
             say="tracking_errors",
             answer=True,
         )
-    determinant = (page.s @ page.identity(size) - page["A_e"]).apply("det")
+    determinant = page["A_e"].pencil.apply("det")
     page.equal(
         relation(determinant, page.term(formula_of_factored(design.loop.loop_polynomial))), say="tracking_polynomial"
     )
