@@ -28,7 +28,7 @@ Place: TypeAlias = "tuple[Fraction, Fraction]"
 Interval: TypeAlias = "tuple[Fraction, Fraction]"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Curve:
     """A segment of the curve of `equation`, either a `boundary` of the region or a dividing curve."""
 
@@ -37,7 +37,7 @@ class Curve:
     boundary: bool = True
 
 
-@dataclass(frozen=True)
+@dataclass
 class MarkedPoint:
     """A marked point: `stable` or `unstable` (a sample of a cell), or `excluded` (a hole of the region)."""
 
@@ -45,7 +45,7 @@ class MarkedPoint:
     kind: str
 
 
-@dataclass(frozen=True)
+@dataclass
 class RegionPicture:
     """A region of two parameters inside a window: filled areas (closed polygons), curves, marks.
 
@@ -60,7 +60,7 @@ class RegionPicture:
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass
 class End:
     """An end of an interval on a line: its position, and its label."""
 
@@ -68,7 +68,7 @@ class End:
     label: Scalar | str
 
 
-@dataclass(frozen=True)
+@dataclass
 class LinePicture:
     """Open intervals of one parameter; a missing end lies beyond the window."""
 
@@ -79,7 +79,7 @@ class LinePicture:
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass
 class PoleMap:
     """A root locus: the paths of the poles over a range of a parameter, with begin and end marked.
 
@@ -99,7 +99,7 @@ class PoleMap:
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass
 class PlottedResponse:
     """The time response of one signal component: `row` times the state.
 
@@ -114,7 +114,7 @@ class PlottedResponse:
     dashed: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class TimeResponse:
     """Time responses: the stacked `states` satisfy a linear equation, with initial states `starts`.
 
@@ -144,7 +144,7 @@ Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse
 Run: TypeAlias = "tuple[tuple[float, float], ...]"
 
 
-@dataclass(frozen=True)
+@dataclass
 class SweepCurves:
     """Columns of a sweep over one name: of each its name, the lines through its values, and the gaps without any.
 
@@ -158,7 +158,7 @@ class SweepCurves:
     infinite: tuple[Formula | str, ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass
 class SweepMap:
     """A column of a sweep over two names: lines of equal values; in the rectangles `gaps` there are none."""
 
@@ -195,7 +195,7 @@ Label: TypeAlias = Formula | Conjunction
 Labels: TypeAlias = "Mapping[str, Label]"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Wire:
     """A wire from one node to another; `turn` is `>`, `-|` or `|-`, `gain` the label of a sign or empty."""
 
@@ -205,7 +205,7 @@ class Wire:
     gain: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Figure:
     """Nodes on a grid, and wires.
 

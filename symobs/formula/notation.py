@@ -35,7 +35,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True)
+@dataclass
 class LetterForm:
     """The forms of a letter: LaTeX, terminal, words.  `{v}` stands for the polynomial's variable."""
 

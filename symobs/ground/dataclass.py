@@ -9,29 +9,44 @@ from __future__ import annotations
 
 import dataclasses
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar, dataclass_transform, overload
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from dataclasses import dataclass
 
 __all__ = ["dataclass"]
 
+Class = TypeVar("Class", bound=type)
+
 _MISSING = dataclasses.MISSING
+#: Where a class keeps whether it is compared and written part by part.
+_OPTIONS = "__compared_and_written__"
 _PART: Any = vars(dataclasses)["_FIELD"]  # by this mark `replace` and `fields` know a part
 
 
-def _dataclass(*, frozen: bool = False, eq: bool = True, repr: bool = True) -> Callable[[Any], Any]:  # noqa: A002
-    """Give a class the methods that its annotated parts call for; the options are those of the standard library."""
+@overload
+def dataclass(cls: Class) -> Class: ...
+@overload
+def dataclass(*, frozen: bool = True, eq: bool = True, repr: bool = True) -> Callable[[Class], Class]: ...
+@dataclass_transform(frozen_default=True, field_specifiers=(dataclasses.field,))
+def dataclass(cls: Any = None, *, frozen: bool = True, eq: bool | None = None, repr: bool | None = None) -> Any:  # noqa: A002
+    """Give a class the methods that its annotated parts call for; the options are those of the standard library.
+
+    Where nothing else is said data are frozen, and compared and written like those of the base.
+    """
 
     def make(cls: Any) -> Any:
+        bases = (vars(base).get(_OPTIONS) for base in cls.__mro__[1:])
+        usual = next(filter(None, bases), (True, True))
+        is_compared, is_written = (u if given is None else given for u, given in zip(usual, (eq, repr), strict=True))
         parts = _parts(cls)
         by_place = tuple(name for name, part in parts.items() if part.init and not part.kw_only)
         methods: dict[str, Any] = {"__dataclass_fields__": parts, "__match_args__": by_place}
         methods["__init__"] = _initialiser(cls, parts, by_place)
-        if eq:
+        methods[_OPTIONS] = is_compared, is_written
+        if is_compared:
             methods |= _comparison(parts, hashed=frozen)
-        if repr:
+        if is_written:
             methods["__repr__"] = _written
         if frozen:
             methods |= {"__setattr__": _refuse, "__delattr__": _refuse}
@@ -42,7 +57,7 @@ def _dataclass(*, frozen: bool = False, eq: bool = True, repr: bool = True) -> C
             setattr(cls, name, methods[name])
         return cls
 
-    return make
+    return make if cls is None else make(cls)
 
 
 def _parts(cls: Any) -> dict[str, Any]:
@@ -131,7 +146,3 @@ def _written(self: Any) -> str:
 
 def _refuse(self: Any, name: str, *_: object) -> None:
     raise dataclasses.FrozenInstanceError(f"{type(self).__qualname__}.{name} cannot be changed")
-
-
-if not TYPE_CHECKING:
-    dataclass = _dataclass

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from symobs.tasks.result import Result
 
 
-@dataclass(frozen=True)
+@dataclass
 class Card:
     """One answer: its field, what is shown, and the field's value; roots are shown as their list."""
 
@@ -40,7 +40,7 @@ class Card:
     answer: Any
 
 
-@dataclass(frozen=True)
+@dataclass
 class CardPrinter:
     """The printers of a result's cards, in the letters of a convention; what they say is in a language."""
 

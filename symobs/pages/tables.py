@@ -48,7 +48,7 @@ _NARROWER = 1.4
 _NARROWEST = 1.0
 
 
-@dataclass(frozen=True)
+@dataclass
 class Fitted(Generic[B]):
     """A fitted table: powers, entries, the remark of each row, and the definitions below."""
 

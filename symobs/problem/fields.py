@@ -259,7 +259,7 @@ MARKING = table(
 )
 
 
-@dataclass(frozen=True)
+@dataclass
 class Milestone:
     """A relation on the way to the answer, and the marks of a derivation that contains it."""
 
@@ -267,7 +267,7 @@ class Milestone:
     points: Fraction
 
 
-@dataclass(frozen=True)
+@dataclass
 class Marking:
     """The marking scheme of a problem: parts and exact points."""
 

@@ -57,7 +57,7 @@ _DATA |= {"E": "E_d", "S": "S_w", "V": "V_w", "reference": "Q_r"}  # of exosyste
 _WORDS = {"Name", "Sign"}
 
 
-@dataclass(frozen=True)
+@dataclass
 class Question(Document):
     """A question: a document without results."""
 

@@ -140,7 +140,7 @@ def schema() -> dict[str, Any]:
     return {**own, **_FILE.schema, "required": ["problem"]}
 
 
-@dataclass(frozen=True)
+@dataclass
 class SheetProblem:
     """A problem of a sheet: file, points, hint, and room for the answer."""
 
@@ -150,7 +150,7 @@ class SheetProblem:
     space: AnswerSpace | None = None
 
 
-@dataclass(frozen=True)
+@dataclass
 class SheetFile:
     """A validated sheet: its head, and its problems with the texts of their files."""
 

@@ -48,7 +48,7 @@ _MAX_CELLS = 1000
 OPEN = object()
 
 
-@dataclass(frozen=True)
+@dataclass
 class Problem:
     """A validated problem: everything but the answers."""
 

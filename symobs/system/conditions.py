@@ -41,7 +41,7 @@ _OPPOSITE = {
 _KNOWN = frozenset(SIGNS) - {"real"}
 
 
-@dataclass(frozen=True)
+@dataclass
 class Condition:
     """expression operator 0, of the given kind."""
 

@@ -346,7 +346,7 @@ def shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
     return errors
 
 
-@dataclass(frozen=True)
+@dataclass
 class Nonlinear:
     """A plant ẋ = f(x, u), y = h(x, u) (x(k+1) = f in discrete time) and an equilibrium of it, by name."""
 
@@ -374,21 +374,21 @@ class Nonlinear:
 # The time domain as a type: `Continuous`, `TimeVarying` or `Discrete`.
 
 
-@dataclass(frozen=True)
+@dataclass
 class Continuous:
     """Continuous time: ẋ, the variable s, stability in the open left half-plane."""
 
     variable = "s"
 
 
-@dataclass(frozen=True)
+@dataclass
 class TimeVarying(Continuous):
     """Continuous time t, which the matrices themselves may contain: ẋ = A(t) x + B(t) u."""
 
     variable = "t"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Discrete:
     """Discrete time: x(k+1), the variable z, stability in the open unit disc; `period` if it is known."""
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from symobs.exact import Scalar
 
 
-@dataclass(frozen=True)
+@dataclass
 class Symbols:
     """The symbols of a problem: names, signs, printed forms, and the caller's SymPy objects.
 

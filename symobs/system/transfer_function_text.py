@@ -26,7 +26,7 @@ MOST_STATES = 200
 REALISATIONS = ("controllable", "observable", "modal")
 
 
-@dataclass(frozen=True)
+@dataclass
 class WrittenTransferFunction:
     """An unreduced rational function of the variable: above / below, with common factors."""
 

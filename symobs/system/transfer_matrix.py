@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from symobs.system.symbols import Symbols
 
 
-@dataclass(frozen=True)
+@dataclass
 class WrittenTransferMatrix:
     """A matrix of unreduced rational functions of the variable."""
 

@@ -111,7 +111,7 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class Trace(Result):
     """A matrix M with M = A."""
 

@@ -78,7 +78,7 @@ if TYPE_CHECKING:
 # Candidate letters in place of a printed one.
 
 
-@dataclass(frozen=True)
+@dataclass
 class CandidateLetters:
     """The letters of an environment, without the names of `fields` of an answer and reserved names.
 
@@ -152,7 +152,7 @@ _WHERE = " where"
 _FUNCTIONS = {name for name, _ in FUNCTIONS}
 
 
-@dataclass(frozen=True)
+@dataclass
 class PrintedEntry:
     """A printed entry: an equation of two or more members, or answers in the form of `[expect]`."""
 
@@ -279,7 +279,7 @@ _MOST_LETTERS = 3
 _MOST_SQUARES = 3
 
 
-@dataclass(frozen=True)
+@dataclass
 class Verdict:
     """The correction of an equation that does not hold in general, and the reason; `holds` states where it does."""
 
@@ -288,7 +288,7 @@ class Verdict:
     holds: str = ""
 
 
-@dataclass()
+@dataclass(frozen=False)
 class EquationAuditor:
     """The letters of one convention, and the equations found true so far."""
 
@@ -634,7 +634,7 @@ class EquationAuditor:
 # Findings of the audit of a problem: false equations, right values and reasons.
 
 
-@dataclass(frozen=True)
+@dataclass
 class Finding:
     """A printed equation that does not hold in general: its place, text, correction and reason.
 
@@ -649,7 +649,7 @@ class Finding:
     holds: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Audited:
     """The findings for one problem, the number of printed equations, and notes on the reading of letters."""
 

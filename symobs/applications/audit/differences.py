@@ -19,7 +19,7 @@ _MOST_LISTED = 4
 _MOST_EXCHANGED = 12
 
 
-@dataclass(frozen=True)
+@dataclass
 class EntryDifference:
     """One entry of a printed value, and the right one."""
 

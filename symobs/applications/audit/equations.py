@@ -48,7 +48,7 @@ _STRICT_OF = {"nonnegative": "positive", "nonpositive": "negative", "real": "non
 _NOT_NEGATIVE, _NOT_POSITIVE = {"positive", "nonnegative", "zero"}, {"negative", "nonpositive"}
 
 
-@dataclass(frozen=True)
+@dataclass
 class EquationConditions:
     """The conditions of an equation, and the signs of the symbols with them.
 
@@ -122,7 +122,7 @@ def _stronger(signs: Mapping[str, str], apart: Sequence[tuple[Scalar, ...]], abo
     return found
 
 
-@dataclass(frozen=True)
+@dataclass
 class Gap:
     """An exception: the common zeros of the values, or (`below`) negative values of a radicand."""
 
@@ -131,7 +131,7 @@ class Gap:
     below: bool = False
 
 
-@dataclass()
+@dataclass(frozen=False)
 class Reading:
     """Letters and conditions of an equation; with `rounding`, decimals are read as generators.
 
@@ -376,7 +376,7 @@ BEGIN, END = "begin_", "end_"
 HIDDEN = frozenset({"Phi_", "F_z", "G_u", "G_y"})
 
 
-@dataclass(frozen=True)
+@dataclass
 class PlantMatrices:
     """The matrices of a plant, None for missing ones."""
 
@@ -528,7 +528,7 @@ def leading_block(C: Matrix | None) -> Matrix | None:
 # Signals of a source: the equations of plant, observer and control law, in its names.
 
 
-@dataclass()
+@dataclass(frozen=False)
 class _Signals:
     """The signals of an environment, collected one by one."""
 

@@ -206,7 +206,7 @@ def integrated(integrand: Matrix, name: str, ends: tuple[Scalar, Scalar]) -> Mat
 # Sizes of values in printed equations, and equality of two sides.
 
 
-@dataclass(frozen=True)
+@dataclass
 class Flexible:
     """A multiple of the identity matrix of undetermined order; 0 is the zero matrix of any size."""
 

@@ -28,7 +28,7 @@ _INDEX = re.compile(r"_?[0-9]+$|_d$")
 _INDEXED = re.compile(r"(.*?)_?([0-9]+|d)")
 
 
-@dataclass(frozen=True)
+@dataclass
 class Slip:
     """A changed side, the change, and whether its letter is kept."""
 
@@ -50,7 +50,7 @@ class Alphabet(Protocol):
         """Return the letter whose value rounds to a matrix of decimals."""
 
 
-@dataclass()
+@dataclass(frozen=False)
 class SearchBudget:
     """The remaining trials of the search for the findings of a file."""
 

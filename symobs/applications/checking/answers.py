@@ -293,7 +293,7 @@ _RELATION = re.compile(r"[=<>]|!=")
 _NUMBERS, _BAR = re.compile(r"[-+]?[\d.][\d.eE/+-]*(?:\s+[-+]?[\d.][\d.eE/+-]*)+"), re.compile(r"-{3,}")
 
 
-@dataclass(frozen=True)
+@dataclass
 class Step:
     """One line of a derivation, its place, and what letters stand for in it."""
 
@@ -302,7 +302,7 @@ class Step:
     let: Mapping[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Answer:
     """What a student hands in.
 

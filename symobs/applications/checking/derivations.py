@@ -93,7 +93,7 @@ def place_alone(reason: str) -> str:
     return re.sub(r"^(entry \([0-9]+, [0-9]+\)) is [^;]*$", r"\1 is wrong", reason)
 
 
-@dataclass()
+@dataclass(frozen=False)
 class LineAuditor(EquationAuditor):
     """An auditor that tells whether a line is true, and what it defines.
 
@@ -242,7 +242,7 @@ _CHOSEN = ("dual", "initial_state")
 _ORDER = re.compile(r"[<>]")
 
 
-@dataclass()
+@dataclass(frozen=False)
 class _Derivation:
     """What the lines so far have defined: right gains, and the values of letters that are not right."""
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # A fault: one change of the right answer, or of what it was computed from, that gives the student's value.
 
 
-@dataclass(frozen=True)
+@dataclass
 class Fault:
     """The slip by its name, the reason in words, and the place: `[row, column]` or `{"coefficient": 1}`."""
 
@@ -34,7 +34,7 @@ class Fault:
     place: Any = None
 
 
-@dataclass(frozen=True)
+@dataclass
 class Explained:
     """Why a part is wrong: the slip, None where none was found, other ones that fit as well, and what the value does."""
 

@@ -379,7 +379,7 @@ _EITHER = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass
 class Judged:
     """A part of an answer with its verdict: right, follows, wrong, missing, unreadable, undecided.
 
@@ -404,7 +404,7 @@ class Judged:
     separation: Separation | None = None
 
 
-@dataclass(frozen=True)
+@dataclass
 class TaskJudgement:
     """The parts of an answer to one task.
 
@@ -422,7 +422,7 @@ class TaskJudgement:
         return any(part.name in self.right.gains and part.value is not None for part in self.parts)
 
 
-@dataclass()
+@dataclass(frozen=False)
 class _Task:
     """The judgement of one task as it is made."""
 

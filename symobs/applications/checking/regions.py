@@ -194,7 +194,7 @@ _MOST_TRIED = 4000
 _TRIED = tuple(map(Fraction, ["1", "2", "-1", "3", "1/2", "-2", "5", "10", "1/10", "-5", "20", "100"]))
 
 
-@dataclass(frozen=True)
+@dataclass
 class Separation:
     """The verdict on a region; where it is `wrong`, a point that lies in one of both only, or the boundary alone differs.
 

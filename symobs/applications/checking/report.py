@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 SHOW = ("verdict", "place", "reason", "solution")
 
 
-@dataclass(frozen=True)
+@dataclass
 class Part:
     """What is asked for, and what became of it.
 
@@ -54,7 +54,7 @@ class Part:
     right: str | None = None
 
 
-@dataclass(frozen=True)
+@dataclass
 class Line:
     """A line of a derivation: true, follows (from earlier lines that are wrong), false, unreadable or undecided."""
 
@@ -66,7 +66,7 @@ class Line:
     reason: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass
 class ReportData:
     """The verdict on an answer: right, wrong, incomplete, unreadable or undecided, with its score and its parts.
 

@@ -38,7 +38,7 @@ _FILES = (".toml", ".json", ".txt")
 _SEPARATOR = re.compile(r'"?sep=([;,\t])"?')
 
 
-@dataclass(frozen=True)
+@dataclass
 class Submission:
     """What one student handed in: the text of an answer file, or values by field and the lines of the derivation."""
 
@@ -50,7 +50,7 @@ class Submission:
     steps: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Submissions:
     """The submissions that count, in the order of the input, and the places of those that a later one replaced.
 
@@ -274,7 +274,7 @@ _MANIFEST, _ASSIGNMENT = "manifest.json", "assignment.csv"
 _MADE = "name what `symobs variants -o FOLDER` wrote"
 
 
-@dataclass(frozen=True)
+@dataclass
 class ClassProblems:
     """The problems of a class: the text of each variant by its name, and who has which; one text where all have the same.
 

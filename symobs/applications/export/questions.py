@@ -69,7 +69,7 @@ SLIPS = ("sign", "sign_convention", "transposed", "entry", "rounded", "other_hal
 _ELSEWHERE = "leave it out with --asked, or have the answers checked by symobs check"
 
 
-@dataclass(frozen=True)
+@dataclass
 class ExportedPart:
     """A part of a question.
 
@@ -251,7 +251,7 @@ MOST_PROBLEMS = 1000
 MANIFEST = "manifest.json"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Exercise:
     """A problem as a question: `question` is what its grader knows, `identifier` the beginning of the hash of its file."""
 
@@ -279,7 +279,7 @@ class Exercise:
         return self.parts[0].part.partition(".")[0].replace("_", " ")
 
 
-@dataclass(frozen=True)
+@dataclass
 class ExerciseSet:
     """Variants of one question: inputs and marks are the same in all of them."""
 

@@ -194,7 +194,7 @@ def _near(value: Fraction, interval: tuple[Fraction, Fraction]) -> str:
 # What a task shows and what can be moved in it: panels, sets of poles, cards.
 
 
-@dataclass(frozen=True)
+@dataclass
 class PoleSet:
     """Poles that can be moved: the key of the specification, the word for one of them, and their mark."""
 
@@ -254,7 +254,7 @@ def _gives_polynomial(specification: Any, key: str) -> bool:
 _KEPT = 8
 
 
-@dataclass(frozen=True)
+@dataclass
 class Solved:
     """A problem with the result of its task."""
 

@@ -78,7 +78,7 @@ class FieldError(InputError):
         return language.phrases[self.phrase].format(**self.slots), language.phrases[f"{self.phrase}_repair"]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Responses:
     """Which time responses are wanted: from an initial state and estimate, or to a step; last instant, how many instants."""
 
@@ -89,7 +89,7 @@ class Responses:
     step: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class Request:
     """A request that was read; `names` are the cards wanted, None those of the task."""
 

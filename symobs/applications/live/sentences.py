@@ -75,7 +75,7 @@ def _property(result: Result) -> str:
     return _PROPERTIES.get(result.task, "")
 
 
-@dataclass(frozen=True)
+@dataclass
 class Stability:
     """Whether the roots of a polynomial are stable, of a loop, an error or A; `poles` are those that are not."""
 

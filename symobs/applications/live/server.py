@@ -45,7 +45,7 @@ _LOOK_EVERY, _MOST_SECONDS = 0.02, 600
 _LONG = {"page", "view", "export"}
 
 
-@dataclass(frozen=True)
+@dataclass
 class AnswerBudget:
     """Seconds an answer may take, megabytes a child may use."""
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 EXIT_NO, EXIT_UNDECIDED = 4, 5
 
 
-@dataclass(frozen=True)
+@dataclass
 class Outcome:
     """The outputs with their targets, the messages, the exit code, and the folders to be made, outer ones first."""
 
@@ -43,7 +43,7 @@ def convention_of(name: str | None) -> Any:
     return convention_named(name)
 
 
-@dataclass(frozen=True)
+@dataclass
 class PageOptions:
     """The options of a command that writes the page of one problem; `document` has those of the document."""
 

@@ -43,7 +43,7 @@ _LONGEST_TITLE = 300
 _WORTH_CHILDREN = 24
 
 
-@dataclass(frozen=True)
+@dataclass
 class Wanted:
     """The options of the command."""
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-@dataclass(frozen=True)
+@dataclass
 class AlgebraicExtension:
     """The field of a root `name` of an irreducible polynomial in `name`."""
 

@@ -39,7 +39,7 @@ MARGIN_DIGITS = 6
 _MOST_BITS = 4096
 
 
-@dataclass(frozen=True)
+@dataclass
 class Loop:
     """A loop whose closed loop is stable: |P + N|² and |P|² on the boundary, without what they share, and |P|² − |N|²."""
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 # Complex numbers with exact real and imaginary part, for poles and roots.
 
 
-@dataclass(frozen=True)
+@dataclass
 class Complex:
     """real + imaginary·i."""
 
@@ -96,7 +96,7 @@ def _is_atom(text: str) -> bool:
     return " " not in text
 
 
-@dataclass(frozen=True)
+@dataclass
 class Factored:
     """unit · Π factorᵏ; factors with negative multiplicity form the denominator."""
 
@@ -165,7 +165,7 @@ def factored(value: Scalar, variable: str, *, monic: bool = True) -> Factored:
     return Factored(unit, tuple(kept))
 
 
-@dataclass(frozen=True)
+@dataclass
 class Root:
     """One root of a monic irreducible factor.
 
@@ -231,7 +231,7 @@ class Root:
         return f"{self.centre} {sign} {text}"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Shifted:
     """value − root: an entry of A − λI on the diagonal, λ an algebraic number."""
 

@@ -178,7 +178,7 @@ class RealNumber:
         return _from_coefficients, (tuple(map(int, self.polynomial.coeffs())), self.index)
 
 
-@dataclass(frozen=True)
+@dataclass
 class RealRoot(Function):
     """A real algebraic number without a closed form as a generator; the argument is its minimal polynomial."""
 

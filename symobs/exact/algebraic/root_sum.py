@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 BOUND = "lam"
 
 
-@dataclass(frozen=True)
+@dataclass
 class RootSum(Function):
     """Σ λᵖ e^{λ·argument} / q′(λ) over the roots λ of q, a polynomial in the generator of eigenvalues."""
 

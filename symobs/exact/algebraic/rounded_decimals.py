@@ -45,7 +45,7 @@ _MOST_DECIMALS = 40
 _WORKING_BITS, _RADIUS, _STEPS = 256, 60, 60
 
 
-@dataclass(frozen=True)
+@dataclass
 class PrintedDecimal:
     """A printed decimal: an integer number of units in the last place, times a power of ten."""
 

@@ -84,7 +84,7 @@ def _cut(coefficients: Sequence[fmpz_poly], at: Fraction) -> fmpz_poly:
     return polynomial // content if content > 1 else polynomial
 
 
-@dataclass(frozen=True)
+@dataclass
 class Event:
     """A projection factor: a polynomial in x that vanishes where curves are unbounded, singular, or meet."""
 
@@ -100,7 +100,7 @@ class Event:
         return 1 if once % x.polynomial else 2
 
 
-@dataclass(frozen=True)
+@dataclass
 class Branch:
     """The root number `number` (from 0, ascending) of one curve over a cylinder."""
 
@@ -108,7 +108,7 @@ class Branch:
     number: int
 
 
-@dataclass(frozen=True)
+@dataclass
 class Cylinder:
     """The cylinder between two neighbouring critical lines (None: unbounded on that side), with the sample point `x`."""
 
@@ -119,7 +119,7 @@ class Cylinder:
     samples: tuple[Fraction, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class CriticalLine:
     """A vertical line at a root of the projection, between cylinder `index` and the next one."""
 
@@ -220,7 +220,7 @@ Upright: TypeAlias = "list[fmpq_poly]"
 LARGEST_DEGREE = 16
 
 
-@dataclass(frozen=True)
+@dataclass
 class Fibre:
     """A critical line: rational separators σ₀ < … < σ_N around the N points of all curves on it, and the cells at each σ.
 

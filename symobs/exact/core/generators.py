@@ -44,7 +44,7 @@ class NotWritten(ArithmeticError):
     """A value has no closed form by square roots."""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Function:
     """kind(argument): exp, cos, sin, cosh, sinh, or sqrt, whose argument is the radicand."""
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Rounded: TypeAlias = "Sequence[Sequence[tuple[Fraction, Fraction]]]"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Regulator:
     """ẋ = Ax + Bu (x_{k+1} in discrete time) with the cost ∫ (Σ) xᵀQx + 2xᵀNu + uᵀRu."""
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from symobs.exact.core.field import Field
 
 
-@dataclass(frozen=True)
+@dataclass
 class Krylov:
     """The observability matrix of a pair (A, c) with one output row."""
 

@@ -54,7 +54,7 @@ class OpenBranch(ArithmeticError):
         self.discriminant = discriminant
 
 
-@dataclass(frozen=True)
+@dataclass
 class Mode:
     """The functions of one factor: e^{rate · t}, or the pair of a quadratic factor with its δ (0 for a real rate)."""
 
@@ -100,7 +100,7 @@ class Mode:
         )
 
 
-@dataclass(frozen=True)
+@dataclass
 class RootMode:
     """The functions Σ λʲ e^{λt}/q′(λ), j below the degree of q, a polynomial in λ whose roots have no closed form."""
 
@@ -125,7 +125,7 @@ class RootMode:
         return tuple(time**power * function.value for function in self._sums(time))
 
 
-@dataclass(frozen=True)
+@dataclass
 class Exponential:
     """e^{At} V = Σ function · matrix over the parts; a part is (mode, k, the matrices of its one or two functions)."""
 

@@ -23,7 +23,7 @@ ONE = Scalar.of(1)
 INSTANT = Scalar.symbol("k")
 
 
-@dataclass(frozen=True)
+@dataclass
 class PowerOf(Function):
     """λᵏ (`power`), the real or imaginary part of (σ + iω)ᵏ (`re`, `im`), or δ(k, j) (`KroneckerDelta`); `argument` is k.
 

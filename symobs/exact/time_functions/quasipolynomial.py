@@ -40,7 +40,7 @@ class Key(NamedTuple):
     frequency: Scalar
 
 
-@dataclass(frozen=True)
+@dataclass
 class Quasipolynomial:
     """Σ coefficient · function; no coefficient is 0."""
 

@@ -102,7 +102,7 @@ OBSERVER_GAINS = frozenset({"L", "L_0", "L_G", "L_r"})
 OF_REDUCED_ORDER = frozenset({"F_z", "G_z", "H_z", "M_z", "A_12", "H_d"})
 
 
-@dataclass(frozen=True)
+@dataclass
 class Convention:
     """Letters and signs.
 

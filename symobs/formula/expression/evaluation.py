@@ -165,7 +165,7 @@ def trees_of(text: str, scope: Scope, where: str) -> tuple[Source, tuple[SyntaxN
     return source, parse(Tokeniser(source, scope).run(), source)
 
 
-@dataclass(frozen=True)
+@dataclass
 class MatrixRows:
     """The rows of a matrix, all of one length, and where its bracket opens."""
 

@@ -76,7 +76,7 @@ def refusal(name: str) -> tuple[str, str] | None:
     return None
 
 
-@dataclass(frozen=True)
+@dataclass
 class Scope:
     """The names, the budget and the context of the texts of one call.
 

@@ -27,7 +27,7 @@ def shown(text: str, most: int = MOST_SHOWN) -> str:
     return safe if len(safe) <= most else safe[: most - 1] + "…"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Source:
     """A text and the place it comes from (`plant.A`)."""
 
@@ -88,7 +88,7 @@ MOST_TERMS = 20_000
 MOST_WORK = 3_000_000
 
 
-@dataclass(frozen=True)
+@dataclass
 class Size:
     """An upper bound of an integer polynomial: its generators, total degree, terms, and bits of a coefficient."""
 
@@ -153,7 +153,7 @@ def parts(value: Number) -> Parts:
     return a * d + c * b, b * d
 
 
-@dataclass()
+@dataclass(frozen=False)
 class Meter:
     """The accumulated cost of the texts of one call."""
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 # The syntax tree of an expression, before evaluation.
 
 
-@dataclass(frozen=True)
+@dataclass
 class SyntaxNode:
     """A part of an expression, as it is written.
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _ONE = Scalar.of(1)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Fraction:
     """above / below, neither of which is reduced by the other; both are polynomials."""
 

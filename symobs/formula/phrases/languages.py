@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 # What a slot of a sentence holds where a language has words for it: numbers of things, and a choice of states.
 
 
-@dataclass(frozen=True)
+@dataclass
 class Counted:
     """How many of a thing there are, or which one is meant: `thing` is a key of `COUNTS`; `among` how many there are in all."""
 
@@ -36,7 +36,7 @@ class Counted:
     among: int = 0
 
 
-@dataclass(frozen=True)
+@dataclass
 class StateChoice:
     """Sets of states, counted from 1, any one of which will do; all are of the same size."""
 
@@ -60,7 +60,7 @@ COUNTED = re.compile(r"<([^<|>]*)\|([^<|>]*)>")
 _PLACES = {"ch.": "chapter", "sec.": "section"}
 
 
-@dataclass(frozen=True)
+@dataclass
 class Language:
     """The phrases and words of one language."""
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from symobs.formula.tree.nodes import Formula
 
 
-@dataclass(frozen=True)
+@dataclass
 class Signal:
     """Σ coefficient · free signal, with `size` components; coefficients are matrices of the arithmetic in use."""
 

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from symobs.exact.core.modular import Point
 
 
-@dataclass(frozen=True)
+@dataclass
 class Meanings:
     """The meaning of the letters: values, dynamics, and relations.
 

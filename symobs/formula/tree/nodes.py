@@ -19,28 +19,28 @@ if TYPE_CHECKING:
     from symobs.exact.core.generators import Function
 
 
-@dataclass(frozen=True)
+@dataclass
 class Letter:
     """A named quantity of the derivation, such as A, L, x̂ or χ; `name` is its key in `notation`."""
 
     name: str
 
 
-@dataclass(frozen=True)
+@dataclass
 class Literal:
     """An exact value written out."""
 
     value: Scalar | Matrix
 
 
-@dataclass(frozen=True)
+@dataclass
 class Decimals:
     """Decimals written out, as digits and not as fractions: exact where they follow `=`, rounded where they follow `≈`."""
 
     value: Scalar | Matrix
 
 
-@dataclass(frozen=True)
+@dataclass
 class Numeral:
     """An exact number that is not negative, and the decimals printed for it: `0.33333`, `1.2346e-7`, or exactly `10.78`.
 
@@ -51,35 +51,35 @@ class Numeral:
     text: str
 
 
-@dataclass(frozen=True)
+@dataclass
 class Identity:
     """The identity matrix I."""
 
     order: int
 
 
-@dataclass(frozen=True)
+@dataclass
 class Sum:
     """terms[0] + terms[1] + …; a `Negative` term is printed with a minus sign."""
 
     terms: tuple[Formula, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Negative:
     """The negative of an operand."""
 
     operand: Formula
 
 
-@dataclass(frozen=True)
+@dataclass
 class Product:
     """factors[0] · factors[1] · …, in this order."""
 
     factors: tuple[Formula, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Power:
     """base to an integer exponent; −1 is the inverse."""
 
@@ -87,14 +87,14 @@ class Power:
     exponent: int
 
 
-@dataclass(frozen=True)
+@dataclass
 class Transpose:
     """operandᵀ."""
 
     operand: Formula
 
 
-@dataclass(frozen=True)
+@dataclass
 class Quotient:
     """numerator / denominator, the denominator a scalar."""
 
@@ -102,7 +102,7 @@ class Quotient:
     denominator: Formula
 
 
-@dataclass(frozen=True)
+@dataclass
 class Apply:
     """A function of one argument: det, adj, rank."""
 
@@ -110,14 +110,14 @@ class Apply:
     argument: Formula
 
 
-@dataclass(frozen=True)
+@dataclass
 class Block:
     """A matrix (or stacked signal) put together from blocks."""
 
     rows: tuple[tuple[Formula, ...], ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Derivative:
     """d/dt of a signal or of a function of time, d/d(name) of a value; the shift x(k+1) of a signal in discrete time."""
 
@@ -125,7 +125,7 @@ class Derivative:
     name: str = "t"
 
 
-@dataclass(frozen=True)
+@dataclass
 class At:
     """The operand with the generator `name` (a time) replaced by `instant`."""
 
@@ -134,7 +134,7 @@ class At:
     instant: Scalar
 
 
-@dataclass(frozen=True)
+@dataclass
 class Integral:
     """∫ integrand d(name) from `lower` to `upper`; `primitive` is the witness, whose derivative is the integrand."""
 
@@ -165,7 +165,7 @@ Formula: TypeAlias = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass
 class Relation:
     """members[0] operators[0] members[1] …: a chain of equations and comparisons, each link a claim.
 
@@ -192,7 +192,7 @@ class Relation:
         return any(contains(member, (At, Integral)) for member in self.members)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Predicate:
     """A property of a value other than an equation: `stable`, `strictly_proper`, `never_zero`."""
 
@@ -200,7 +200,7 @@ class Predicate:
     subject: Formula
 
 
-@dataclass(frozen=True)
+@dataclass
 class Roots:
     """The roots of a monic polynomial (of a rational function: its poles), with multiplicity; printed as their list."""
 
@@ -208,14 +208,14 @@ class Roots:
     values: tuple[Root, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class RoundedRoots(Roots):
     """The same on a page in decimals: (real part, imaginary part, whether one is rounded) for each root."""
 
     texts: tuple[tuple[str, str, bool], ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class HoldsExactlyWhere:
     """A property of a value holds if and only if these inequalities do; printed as their list."""
 
@@ -223,14 +223,14 @@ class HoldsExactlyWhere:
     where: tuple[Relation, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Conjunction:
     """The conjunction of several relations; printed as their list."""
 
     relations: tuple[Relation, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Evaluated:
     """The value of a formula, printed without the formula."""
 
@@ -238,7 +238,7 @@ class Evaluated:
     value: Formula
 
 
-@dataclass(frozen=True)
+@dataclass
 class SymbolList:
     """A list of parameters in a sentence, without a claim."""
 

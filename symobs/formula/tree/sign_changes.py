@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _TURNED_AROUND = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}
 
 
-@dataclass(frozen=True)
+@dataclass
 class SignReversal:
     """The letters with reversed sign, and their values; a matrix written out that equals one of these is reversed too."""
 

@@ -30,7 +30,7 @@ from symobs.formula.tree.nodes import (
 from symobs.ground.dataclass import dataclass
 
 
-@dataclass(frozen=True)
+@dataclass
 class Term:
     """A formula in an environment."""
 
@@ -120,7 +120,7 @@ class Term:
         return self._with(Literal(self.value))
 
 
-@dataclass(frozen=True)
+@dataclass
 class Environment(Meanings):
     """The meanings of letters, with the term of each: `e["A"] - e["L"] @ e["C"]`."""
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _FARTHER = 1 + 1e-9
 
 
-@dataclass(frozen=True)
+@dataclass
 class Frame:
     """A window of the plane and its rectangle on paper."""
 
@@ -201,7 +201,7 @@ Name = TypeVar("Name", bound="Formula | Relation")
 Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Surroundings:
     """Constraints of a label: frame, lines not to cross, occupied boxes, and lines and areas to avoid."""
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 Measure: TypeAlias = "Callable[[Label], Point]"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Metrics:
     """The measures of a format: size of a label, and spacing.
 

@@ -39,7 +39,7 @@ Measure: TypeAlias = "Callable[[Content], tuple[float, float]]"
 FONT_SIZE = 9.0
 
 
-@dataclass(frozen=True)
+@dataclass
 class Rectangle:
     """A rectangle."""
 
@@ -73,7 +73,7 @@ class Rectangle:
         return (self.left + self.right) / 2, (self.bottom + self.top) / 2
 
 
-@dataclass(frozen=True)
+@dataclass
 class TextLabel:
     """A label with the `anchor` of its box (center, north, south, east or west) at `place`; or `above`, or to its `right`."""
 
@@ -89,7 +89,7 @@ class TextLabel:
         return Rectangle(left, bottom, left + width, bottom + height)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Stroke:
     """A line in one of the styles of `STYLES`."""
 
@@ -97,7 +97,7 @@ class Stroke:
     style: str
 
 
-@dataclass(frozen=True)
+@dataclass
 class Box:
     """A box of a diagram with its label in the middle."""
 
@@ -106,7 +106,7 @@ class Box:
     content: Content
 
 
-@dataclass(frozen=True)
+@dataclass
 class Sign:
     """A small sign: a `dot`, a `cross`, a `ring`, or the `arrow` that points in a direction.
 
@@ -118,7 +118,7 @@ class Sign:
     direction: Point = (1.0, 0.0)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Style:
     """The style of a line: its width, its colour (ink, text or `pale`), its dashes, and the head of an arrow."""
 
@@ -155,7 +155,7 @@ RADIUS = {"dot": 1.6, "cross": 2.2, "ring": 2.3}
 ARROW = 5.0
 
 
-@dataclass(frozen=True)
+@dataclass
 class Scene:
     """A plot in its frame, or a block diagram; `numbered` are the equations of curves labelled by numbers."""
 

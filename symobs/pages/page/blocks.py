@@ -28,7 +28,7 @@ Inline: TypeAlias = str | Formula | Relation | Roots
 Inlines: TypeAlias = tuple[Inline, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Title:
     """The title of a page, the source of the problem, and its conventions."""
 
@@ -37,7 +37,7 @@ class Title:
     conventions: Inlines
 
 
-@dataclass(frozen=True)
+@dataclass
 class Heading:
     """A heading that runs into the paragraph after it; `number` is empty where headings are not numbered.
 
@@ -49,7 +49,7 @@ class Heading:
     time: tuple[str, bool] | None = None
 
 
-@dataclass(frozen=True)
+@dataclass
 class Paragraph:
     """Sentences; the first may go on with what stands before them."""
 
@@ -57,7 +57,7 @@ class Paragraph:
     continues: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class Display:
     """Relations set apart from the text; boxed, the last member of the last one is an answer.
 
@@ -71,14 +71,14 @@ class Display:
     number: int = 0
 
 
-@dataclass(frozen=True)
+@dataclass
 class Verified:
     """The check of an answer."""
 
     inlines: Inlines
 
 
-@dataclass(frozen=True)
+@dataclass
 class Caution:
     """A warning after its label."""
 
@@ -86,7 +86,7 @@ class Caution:
     inlines: Inlines
 
 
-@dataclass(frozen=True)
+@dataclass
 class References:
     """The sources at the end of a page, numbered from 1."""
 
@@ -94,7 +94,7 @@ class References:
     entries: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Drawing:
     """A block diagram: a figure of `flow` by its name, with the formulas and equations that label it, and its caption."""
 
@@ -103,7 +103,7 @@ class Drawing:
     caption: Inlines = ()
 
 
-@dataclass(frozen=True)
+@dataclass
 class TableBlock:
     """The Routh array; each row has alternative remarks, of which the first that fits is printed.
 
@@ -116,7 +116,7 @@ class TableBlock:
     where: Inlines
 
 
-@dataclass(frozen=True)
+@dataclass
 class PictureBlock:
     """A plot and its caption; `title` stands before every caption of it, the number of the figure and what it shows."""
 
@@ -125,7 +125,7 @@ class PictureBlock:
     title: Inlines = ()
 
 
-@dataclass(frozen=True)
+@dataclass
 class CaseBlock:
     """A special case: a label with its condition, and indented blocks."""
 
@@ -133,7 +133,7 @@ class CaseBlock:
     blocks: tuple[Block, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Columns:
     """Blocks in columns under heads, row by row, with a cell for each head."""
 
@@ -141,7 +141,7 @@ class Columns:
     rows: tuple[tuple[tuple[Block, ...], ...], ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class AnswerSpace:
     """Room for an answer written by hand, in centimetres; ruled, with a line every eight millimetres."""
 

@@ -54,7 +54,7 @@ def points_in_words(points: Sequence[Fraction], language: Language) -> str:
     return f"{language.decimal(decimal_of(total))} {words['point' if total == 1 else 'points']}" if points else ""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Logo:
     """A picture at the head of a sheet: its kind (png, jpg or pdf), its bytes, and where LaTeX finds it."""
 
@@ -63,7 +63,7 @@ class Logo:
     path: str
 
 
-@dataclass(frozen=True)
+@dataclass
 class Header:
     """The head of a sheet."""
 
@@ -80,7 +80,7 @@ class Header:
     is_exam: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class SheetEntry:
     """One problem of a sheet; a part that failed is None."""
 
@@ -100,7 +100,7 @@ class SheetEntry:
     language: str = ""
 
 
-@dataclass(frozen=True)
+@dataclass
 class Item:
     """One piece of a chapter: what it begins with, and a part of a problem or a text in its place."""
 
@@ -118,7 +118,7 @@ class Item:
         return f"{self.kind}-{self.entry.number}"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Chapter:
     """A chapter of a sheet; that of an examination has no title."""
 
@@ -127,7 +127,7 @@ class Chapter:
     items: tuple[Item, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Sheet:
     """Problems under one title: first all questions, then all solutions; in an examination one after the other."""
 

@@ -24,7 +24,7 @@ class Level(IntEnum):
     ATOM = 4
 
 
-@dataclass(frozen=True)
+@dataclass
 class GlyphBox:
     """A printed part; formats add its text."""
 

@@ -59,7 +59,7 @@ _UNBREAKABLE = _LONG_NUMBER * widths.DIGIT
 _PAGE_OF_ROWS = 8
 
 
-@dataclass(frozen=True)
+@dataclass
 class LatexBox(GlyphBox):
     """LaTeX source; `height` is 0 for a line of letters, 1 for a fraction, else about the number of rows."""
 

@@ -213,7 +213,7 @@ _ALPHABETS = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass
 class LatexPart:
     """One part of a form: an element with its sub- and superscript."""
 

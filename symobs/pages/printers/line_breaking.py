@@ -60,7 +60,7 @@ _SHORT_END = 0.3
 _WIDEST_DENOMINATOR = 0.7
 
 
-@dataclass(frozen=True)
+@dataclass
 class LinePiece(Generic[B]):
     """An unbreakable piece, with its prefix inside a line (`within`) and at the start of one (`at_start`)."""
 
@@ -356,7 +356,7 @@ _LONGEST_FRAME = 12
 _WIDEST_HEAD = 8
 
 
-@dataclass(frozen=True)
+@dataclass
 class DisplayRow(Generic[B]):
     """A line of a display, aligned where `right` begins; a centred line has no `left`."""
 

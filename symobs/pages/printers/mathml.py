@@ -81,7 +81,7 @@ _EXCESS = 1.05
 _SIZES = ("1.2em", "1.8em", "2.4em", "3em")
 
 
-@dataclass(frozen=True)
+@dataclass
 class MathmlBox(GlyphBox):
     """Elements side by side; `height` is 0 for a line of letters, 1 for a fraction, else about the number of rows.
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _NOTHING = Scalar.of(0)
 
 
-@dataclass(frozen=True)
+@dataclass
 class RootGlyphs:
     """The interface of a format for roots; `among` writes the roots of an equation."""
 

@@ -37,7 +37,7 @@ _INDEX = {"k": "ₖ", "k+1": "ₖ₊₁"}
 _BRACKETS = {"(": ("⎛⎜⎝", "⎞⎟⎠"), "[": ("⎡⎢⎣", "⎤⎥⎦")}
 
 
-@dataclass(frozen=True)
+@dataclass
 class TextBox(GlyphBox):
     """Lines of equal width; `baseline` is the one that stands on the line of its neighbours."""
 

@@ -67,7 +67,7 @@ UNREADABLE = (*EVALUATION_ERRORS, AssertionError, AttributeError, TypeError)
 _AT_POINTS = {"=", "!=="}
 
 
-@dataclass(frozen=True)
+@dataclass
 class Claim:
     """A relation that must hold in an environment; `says` is its printed text."""
 
@@ -79,7 +79,7 @@ class Claim:
         return self.says or plain_relation(self.relation, self.environment.variable)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Statement:
     """A claim other than an equation: `shown` returns the proof method, "" if the claim is false."""
 
@@ -87,7 +87,7 @@ class Statement:
     shown: Callable[[], str]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Certificate:
     """A checked claim: the method, and a bound for the probability of accepting a false one."""
 

@@ -84,7 +84,7 @@ if TYPE_CHECKING:
 Value: TypeAlias = Scalar | Matrix | Signal
 
 
-@dataclass(frozen=True)
+@dataclass
 class Derivation:
     """Steps that start from an environment with free signals and declared signs only."""
 

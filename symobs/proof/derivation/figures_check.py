@@ -176,7 +176,7 @@ def written(place: Place) -> str:
     return f"({', '.join(map(str, place))})"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Stability:
     """Stability of a polynomial over the axes of a plot, which are parameters with declared signs."""
 

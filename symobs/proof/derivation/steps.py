@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from symobs.stability.criteria.routh_table import RouthTable
 
 
-@dataclass(frozen=True)
+@dataclass
 class Sentence:
     """A phrase of `phrases.PHRASES`, its slots filled by formulas, facts, text, or what a language puts into words."""
 
@@ -47,7 +47,7 @@ class Sentence:
             raise ValueError(message)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Given:
     """Data of the problem, or with `!=` a condition assumed: each relation introduces its first member.
 
@@ -59,7 +59,7 @@ class Given:
     silent: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class Define:
     """A new letter (or the dynamics of a new signal): members[0] is introduced, the others must agree."""
 
@@ -69,7 +69,7 @@ class Define:
     silent: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class Equal:
     """Relations between established values, on one display."""
 
@@ -78,7 +78,7 @@ class Equal:
     answer: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class Conclude:
     """A finding; `verified` marks a check the reader is shown; without sentence it only binds the page."""
 
@@ -87,7 +87,7 @@ class Conclude:
     verified: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class Note:
     """A remark; `caution` marks a warning.  It contains established letters only."""
 
@@ -96,7 +96,7 @@ class Note:
     caution: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class Diagram:
     """A block diagram: a figure of `flow` by its name, with the gains and signals that label it.
 
@@ -108,7 +108,7 @@ class Diagram:
     sentence: Sentence | None = None
 
 
-@dataclass(frozen=True)
+@dataclass
 class Tabulate:
     """Routh's table of a polynomial in `variable`; the findings printed below are among those of `findings_of`."""
 
@@ -119,7 +119,7 @@ class Tabulate:
     findings: tuple[Sentence, ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass
 class Inequalities:
     """A property holds exactly where some inequalities do: shown on a display of their own."""
 
@@ -128,7 +128,7 @@ class Inequalities:
     answer: bool = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class RegionSummary:
     """The region of one or two parameters (`names`) in which a polynomial is stable, in words and in parts.
 
@@ -143,7 +143,7 @@ class RegionSummary:
     sentence: Sentence | None = None
 
 
-@dataclass(frozen=True)
+@dataclass
 class Plot:
     """A picture of where `subject`, a polynomial, is stable, or of its roots as a parameter moves."""
 
@@ -152,7 +152,7 @@ class Plot:
     sentence: Sentence | None = None
 
 
-@dataclass(frozen=True)
+@dataclass
 class CaseStep:
     """A case: the steps that hold on a stratum; `when` holds there because of `substitution`.
 
@@ -167,7 +167,7 @@ class CaseStep:
     anew: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass
 class Section:
     """A titled run of steps; sections nest."""
 

@@ -81,7 +81,7 @@ _Slots: TypeAlias = "Mapping[str, Formula | Fact | Counted | StateChoice | str]"
 _WEAKER = "stable in the sense of Lyapunov"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Said:
     """Where a sentence stands: the facts and relations of its step, and what fills its slots."""
 

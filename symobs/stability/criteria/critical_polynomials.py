@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
 
-@dataclass(frozen=True)
+@dataclass
 class StabilityBoundary:
     """The stability boundary: Re s < −margin, or in discrete time |z| < radius."""
 
@@ -55,7 +55,7 @@ class StabilityBoundary:
         )
 
 
-@dataclass(frozen=True)
+@dataclass
 class CriticalPolynomials:
     """The polynomial a₀ wⁿ + … + aₙ without denominators, and its critical polynomials.
 

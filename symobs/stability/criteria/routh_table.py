@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 ORIGINS = ("coefficients", "recurrence", "epsilon", "auxiliary")
 
 
-@dataclass(frozen=True)
+@dataclass
 class RouthRow:
     """The row of one power of the variable: its entries, and its origin (one of `ORIGINS`)."""
 
@@ -35,7 +35,7 @@ class RouthRow:
     origin: str
 
 
-@dataclass(frozen=True)
+@dataclass
 class RouthTable:
     """The rows from sⁿ to s⁰; `epsilon` is the generator of a small positive number, empty if there is none."""
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _POINTS = 60
 
 
-@dataclass(frozen=True)
+@dataclass
 class StabilityVerdict:
     """`verdict` yes, no or conditional; `positive` are the polynomials that must be > 0 where it is conditional."""
 

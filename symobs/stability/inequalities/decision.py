@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from symobs.stability.inequalities.sample_points import Point
 
 
-@dataclass(frozen=True)
+@dataclass
 class Decision:
     """A decision, `yes`, `no` or `undecided`, with the proof of a yes or the point that refutes it."""
 
@@ -109,7 +109,7 @@ def _completed(point: Point, values: Sequence[Scalar], signs: Mapping[str, str])
 _DEEPEST = 3
 
 
-@dataclass(frozen=True)
+@dataclass
 class SignCase:
     """The conditions where some expressions without parameters have certain signs.
 

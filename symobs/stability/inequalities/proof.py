@@ -28,7 +28,7 @@ ZERO, ONE = Scalar.of(0), Scalar.of(1)
 Product: TypeAlias = tuple[Scalar, tuple[Scalar, ...]]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Combined:
     """value · (sum of `multiplier`) = sum of `total`."""
 
@@ -37,7 +37,7 @@ class Combined:
     total: tuple[Product, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Opposite:
     """`steps` lead from −value > 0 to 0 > 0, and `multiple`, a polynomial multiple of the value, is positive."""
 
@@ -46,7 +46,7 @@ class Opposite:
     steps: tuple[Step, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class ProvedByZ3:
     """A verdict of z3: the value is positive wherever the values of `given` are."""
 
@@ -57,7 +57,7 @@ class ProvedByZ3:
 Step: TypeAlias = Combined | Opposite | ProvedByZ3
 
 
-@dataclass(frozen=True)
+@dataclass
 class Equivalence:
     """Two equivalent lists: `forward` leads from `kept` to `raw`, `backward` back."""
 

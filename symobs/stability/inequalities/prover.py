@@ -78,7 +78,7 @@ NOTHING: Monomial = ()
 _ROWS, _COLUMNS, _PIVOTS = 60, 160, 40
 
 
-@dataclass(frozen=True)
+@dataclass
 class Combination:
     """multiplier · goal = certain + Σ squares + Σ factor · (the known values at these places)."""
 
@@ -88,7 +88,7 @@ class Combination:
     multiples: tuple[tuple[Scalar, tuple[int, ...]], ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Column:
     """One unknown coefficient: of a monomial times the goal (None), or times known values (none: by itself).
 
@@ -302,7 +302,7 @@ _PROGRAMS = 3
 _DOWN = {"negative", "nonpositive", "zero"}
 
 
-@dataclass(frozen=True)
+@dataclass
 class Open:
     """A polynomial in the names of a view, and the same known value in the old names."""
 
@@ -310,7 +310,7 @@ class Open:
     value: Scalar
 
 
-@dataclass()
+@dataclass(frozen=False)
 class _SearchBudget:
     """The remaining steps of the search for one goal."""
 
@@ -318,7 +318,7 @@ class _SearchBudget:
     programs: int
 
 
-@dataclass(frozen=True)
+@dataclass
 class SubstitutedProblem:
     """The problem after some substitutions: new names stand for known values."""
 

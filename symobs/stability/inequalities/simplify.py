@@ -49,7 +49,7 @@ def cleared(value: Scalar) -> Scalar:
     return value.numerator * value.denominator
 
 
-@dataclass(frozen=True)
+@dataclass
 class InequalitySystem:
     """A list of conditions, the steps from it to the original list, and the steps from the original list to it."""
 
@@ -211,7 +211,7 @@ _TOLD_APART = 100
 _DOWN = {"negative", "nonpositive", "zero"}
 
 
-@dataclass(frozen=True)
+@dataclass
 class Simplified:
     """An equivalent list.
 
@@ -395,7 +395,7 @@ def _with_help(
     return None
 
 
-@dataclass(frozen=True)
+@dataclass
 class IntervalBox:
     """A product of open intervals: a parameter lies above all its `lower` and below all its `upper` bounds.
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from symobs.stability.regions.region import Cell, PlaneRegion
 
 
-@dataclass(frozen=True)
+@dataclass
 class Edge:
     """A branch: the root `number` (from 0) in y of a polynomial, and its closed form where there is one."""
 
@@ -41,7 +41,7 @@ class Edge:
         return below.is_constant or x.sign_of(integer_factor(below, next(iter(below.names)))) != 0
 
 
-@dataclass(frozen=True)
+@dataclass
 class CylindricalPart:
     """A cylindrical part: low < x < high and lower(x) < y < upper(x), None for no bound.
 
@@ -84,7 +84,7 @@ def parts(region: PlaneRegion) -> tuple[CylindricalPart, ...]:
     return tuple(sorted(found.values(), key=lambda part: (part.component, part.cells[0])))
 
 
-@dataclass(frozen=True)
+@dataclass
 class Adjacency:
     """Two stable cells adjacent along a segment of a critical line, and whether the segment is the whole side of a cell."""
 

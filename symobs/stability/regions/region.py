@@ -54,7 +54,7 @@ class RegionInequality(NamedTuple):
         return value > 0 if self.operator == ">" else value != 0
 
 
-@dataclass(frozen=True)
+@dataclass
 class Sample:
     """A rational point of an open cell, and whether the polynomial is stable in the cell."""
 
@@ -189,7 +189,7 @@ LARGEST_PROJECTION = 170
 _LARGER = 3
 
 
-@dataclass(frozen=True)
+@dataclass
 class Cell:
     """An open cell: its place (cylinder, height in the stack), a rational point in it, and whether it is stable there.
 
@@ -203,7 +203,7 @@ class Cell:
     allowed: bool = True
 
 
-@dataclass(frozen=True)
+@dataclass
 class Component:
     """A connected component of the region: the numbers of its cells, and whether it is bounded."""
 
@@ -211,7 +211,7 @@ class Component:
     bounded: bool
 
 
-@dataclass(frozen=True)
+@dataclass
 class Hole:
     """An isolated excluded point of the region; `y` is None if it has no closed form."""
 
@@ -220,7 +220,7 @@ class Hole:
     near: tuple[Fraction, Fraction]
 
 
-@dataclass(frozen=True)
+@dataclass
 class PlaneRegion:
     """The set of stable (x, y), `names`, as cells of the plane divided by the critical curves."""
 
@@ -483,7 +483,7 @@ def projection_size(polynomials: Sequence[Scalar], names: tuple[str, str]) -> in
 # Stability regions of one parameter: open intervals between critical points.
 
 
-@dataclass(frozen=True)
+@dataclass
 class IntervalPiece:
     """An open interval between neighbouring critical points (None: none on that side), and whether it is stable."""
 
@@ -493,7 +493,7 @@ class IntervalPiece:
     stable: bool
 
 
-@dataclass(frozen=True)
+@dataclass
 class LineRegion:
     """The set of stable values of one parameter."""
 

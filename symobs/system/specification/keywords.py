@@ -151,7 +151,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass
 class DesiredPolynomial:
     """A monic polynomial φ of degree n with real coefficients: its factors, and its poles, or their pattern, if given."""
 

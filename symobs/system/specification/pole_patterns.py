@@ -46,7 +46,7 @@ ITAE = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass
 class PolePattern:
     """What is asked for, by name, with its exact values; and the polynomial that it means, as factors."""
 

@@ -32,7 +32,7 @@ def names_in(convention: Convention, task: str = "", *, reduced: bool = False) -
     }
 
 
-@dataclass(frozen=True)
+@dataclass
 class ResultInConvention:
     """A result in the names and signs of a convention."""
 

@@ -321,7 +321,7 @@ def shown_digits(document: Any) -> int:
 # Interactive parts of an HTML page.
 
 
-@dataclass(frozen=True)
+@dataclass
 class WebPage:
     """All levels of detail to choose from, buttons that copy LaTeX, the address of the problem on a live page."""
 

@@ -18,7 +18,7 @@ from symobs.tasks.result.writers import discover, import_named
 Callback = TypeVar("Callback", bound=Callable[..., Any])
 
 
-@dataclass(frozen=True)
+@dataclass
 class Method:
     """One way to meet a result type's claim: `solve` returns the result, `page` writes how it was found.
 
@@ -33,7 +33,7 @@ class Method:
     page: Callable[..., None] | None = None
 
 
-@dataclass(frozen=True)
+@dataclass
 class Task:
     """A task: its function, its keywords with their kinds and defaults, and whether it works without a plant."""
 

@@ -42,7 +42,7 @@ Text: TypeAlias = Literal["fragment", "html", "html_fragment", "json", "latex", 
 Code: TypeAlias = Literal["c", "matlab", "modelica", "python"]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Case:
     """A case: the relations that describe a stratum, and the complete result there (None: undecided)."""
 
@@ -58,7 +58,7 @@ class Stratum(NamedTuple):
     result: Any  # a `Result` of the same task or None, as the verdict says
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(eq=False, repr=False)
 class Result(TaskTraits):
     """An answer with its certificates.  Subclasses own the claims; tampering with an answer makes construction fail."""
 
@@ -310,7 +310,7 @@ def _denominators(values: Iterable[Any]) -> list[Scalar]:
     return [value.common_denominator() for value in values if hasattr(value, "common_denominator")]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Document:
     """The input of a format: title, source, results, the problem in words, and the options of the page."""
 

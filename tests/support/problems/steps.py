@@ -37,7 +37,7 @@ START = Environment(
 OWN_PHRASES = {"test_plain": "And so on.", "test_slot": "This is {it}.", "test_case": "the gain loses an entry, and"}
 
 
-@dataclass(frozen=True)
+@dataclass
 class HandWritten(Document):
     """A document whose derivations were written by hand instead of by results."""
 

@@ -46,7 +46,7 @@ def made(by: Any) -> dict[str, Any]:
                 raise ValueError("negative")
             object.__setattr__(self, "doubled", 2 * self.value)
 
-    @by()
+    @by(frozen=False)
     class Open:
         items: list[int] = dataclasses.field(default_factory=list)
 
@@ -110,7 +110,7 @@ def test_what_is_frozen_stays(by: str) -> None:
     assert (point.x, point.kind) == (1, "point")
 
 
-@ours.dataclass(frozen=True)
+@ours.dataclass
 class Kept:
     """At the top of a module, since only such a class is pickled."""
 
@@ -127,4 +127,24 @@ def test_objects_are_pickled_and_matched() -> None:
 
 def test_every_class_of_parts_is_made_this_way() -> None:
     wrong = [path for path in SOURCES if "from dataclasses import dataclass" in path.read_text("utf-8")]
-    assert [path.name for path in wrong] == ["dataclass.py"]
+    assert wrong == []
+
+
+def test_parts_are_compared_and_written_as_those_of_the_base() -> None:
+    @ours.dataclass(eq=False, repr=False)
+    class Single:
+        value: int
+
+    @ours.dataclass
+    class Further(Single):
+        more: int
+
+    @ours.dataclass(eq=True, repr=True)
+    class Alike(Further):
+        pass
+
+    assert Further(1, 2) != Further(1, 2)
+    assert "value=" not in repr(Further(1, 2))
+    assert Alike(1, 2) == Alike(1, 2)
+    assert repr(Alike(1, 2)).endswith("Alike(value=1, more=2)")
+    assert hash(Alike(1, 2)) == hash(Alike(1, 2))

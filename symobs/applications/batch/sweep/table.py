@@ -279,7 +279,7 @@ _ENTRY = re.compile(r"\s*([A-Za-z][A-Za-z0-9_]*)\s*=\s*(.+?)\s*", re.DOTALL)
 _EXAMPLE = "write for example l=0.1:0.1:10, m=[1, 2, 5], k=0:1/11 (11 points) or g=decade(1e-3:1e3)"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Axis:
     """A name and its values: a start, a step and a count, or a list."""
 
@@ -305,7 +305,7 @@ class Axis:
         return Axis(name, int(count), Fraction(start), Fraction(step), tuple(map(Fraction, listed)))
 
 
-@dataclass(frozen=True)
+@dataclass
 class Grid:
     """The points of a sweep."""
 

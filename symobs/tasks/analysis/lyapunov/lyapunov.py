@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from symobs.tasks.analysis.strata.strata import Place
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class LyapunovSolution(Result):
     """P with AᵀP + PA = −Q, the only one where det χ(−A) ≠ 0.
 

@@ -73,7 +73,7 @@ class Hidden(NamedTuple):
     annuls: Scalar | None = None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class HiddenStability(ModeResult):
     """The modes, and whether the fixed ones are stable in the chosen meaning."""
 
@@ -221,7 +221,7 @@ def _is_stable(factor: Scalar, plant: StateSpace) -> bool:
     return found.verdict == "yes"
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class Detectability(HiddenStability):
     """Detectability: stability of the unobservable modes."""
 
@@ -236,7 +236,7 @@ class Detectability(HiddenStability):
         return "observability"
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class Stabilizability(HiddenStability):
     """Stabilizability: stability of the uncontrollable modes."""
 

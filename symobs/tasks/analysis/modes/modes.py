@@ -70,7 +70,7 @@ _DEGREE_WITH_PARAMETERS = 2
 TESTS: dict[str, type[RankResult]] = {"observability": Observability, "controllability": Controllability}
 
 
-@dataclass(frozen=True)
+@dataclass
 class Eigenvalues:
     """The roots of one irreducible factor of χ, and the pencil [A − λI; C] at them.
 
@@ -213,7 +213,7 @@ def _is_stable(root: Root, *, discrete: bool) -> bool:
 # -- the results ------------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class ModeResult(Result):
     """χ, the rank of the pencil at each of its factors, and the polynomial of the fixed modes.
 

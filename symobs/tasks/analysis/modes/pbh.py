@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from symobs.system.specification import Name
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class PopovBelevitchHautus(ModeResult):
     """The rank of the pencil at every eigenvalue; with parameters the generic one, with the cases of the rank test."""
 

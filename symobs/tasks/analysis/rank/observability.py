@@ -34,7 +34,7 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class Observability(RankResult):
     """𝒪, its rank, ker 𝒪 and the unobservable modes."""
 
@@ -72,7 +72,7 @@ class Observability(RankResult):
             rank_cases(page, "O", self, "observability")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class Controllability(RankResult):
     """𝒞, its rank and the uncontrollable modes."""
 

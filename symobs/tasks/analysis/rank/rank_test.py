@@ -220,7 +220,7 @@ def minor_claim(found: Mapping[str, Any], e: Environment) -> Iterator[Claim]:
         yield Claim(relation(determinant_term(minor, e), "!==", 0), e, f"a minor of order {found['rank']} is not zero")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class RankResult(Result):
     """The test matrix M of a pair, its rank r, and a basis N of its kernel.
 

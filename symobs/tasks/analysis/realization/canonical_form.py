@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 KINDS: dict[str, str | None] = {"controllable": "controllability", "observable": "observability", "modal": None}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class CanonicalForm(Result):
     """The plant in canonical coordinates x̄ = T x, or that there are none.
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from symobs.system.specification import Name
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class CharacteristicPolynomial(Result):
     """χ with det(sI − A) = χ(s) and the product of the factors equal to χ."""
 

@@ -34,7 +34,7 @@ _OTHER = {"observability": "controllability", "controllability": "observability"
 _PART = {"observability": "C", "controllability": "B"}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class Dual(Result):
     """The dual plant, and the ranks of both tests, of the plant and of the dual.
 

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 ZEROS = ((0, 1), (0, 3), (2, 0), (2, 1), (2, 3), (3, 0), (3, 1))
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class Decomposition(Result):
     """The plant in coordinates x̄ = T x that separate the four parts, and its minimal transfer function.
 

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from symobs.system.specification import Name
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class TransferFunction(Result):
     """P with P(s) = C (sI − A)⁻¹ B + D."""
 

@@ -198,7 +198,7 @@ def excluded_of(region: PlaneRegion) -> dict[str, Any]:
 MOST_DEGREE = 40
 
 
-@dataclass(frozen=True)
+@dataclass
 class RegionQuestion:
     """The polynomial's origin (gains that are given, else the plant itself), the parameters, and what stable means."""
 
@@ -347,7 +347,7 @@ def _boundary(plant: StateSpace, margin: object, radius: object) -> StabilityBou
     return StabilityBoundary(plant.variable, discrete=True, radius=found)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class StabilityRegion(Result):
     """χ, its Routh table, and inequalities that hold exactly where all roots of χ are stable."""
 

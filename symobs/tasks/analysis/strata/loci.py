@@ -50,7 +50,7 @@ class EliminationBudget:
         return self.left < 0 or (len(equations) > 1 and size > _TERMS)
 
 
-@dataclass(frozen=True)
+@dataclass
 class Region:
     """The parameters that are considered: real, with declared signs, on a locus, and none of `nonzero` vanishes."""
 
@@ -73,7 +73,7 @@ class Region:
         return sorted(values, key=lambda value: (len(self.vanishing(value)), value.size))
 
 
-@dataclass(frozen=True)
+@dataclass
 class Locus:
     """The common zeros of some polynomials in a region; none of it is known where there is no ideal."""
 

@@ -51,7 +51,7 @@ ELIMINATED_UP_TO = 300
 EXPANDED = 10**8
 
 
-@dataclass(frozen=True)
+@dataclass
 class Kernel:
     """A basis N of the kernel as columns, X with A N = N X, and rows of a minor of N that X was solved from."""
 
@@ -60,7 +60,7 @@ class Kernel:
     free: tuple[int, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class Node:
     """A locus with the rank that holds on it outside `below`; the minors never vanish together there.
 
@@ -75,7 +75,7 @@ class Node:
     covers: tuple[Locus, ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass
 class Tree:
     """The generic rank, the strata with another one, and the undecided loci.
 

@@ -59,7 +59,7 @@ if TYPE_CHECKING:
 # generic order do not vanish together, and what is excluded from a stratum lies on the loci below it.
 
 
-@dataclass(frozen=True)
+@dataclass
 class Piece:
     """The parameters for which a rank and a kernel are claimed, and minors that never vanish together there."""
 
@@ -79,7 +79,7 @@ def outside(excluded: Iterable[Scalar], equations: Iterable[Scalar] = ()) -> tup
     return (*equations, *map(apart_from_zero, distinct))
 
 
-@dataclass(frozen=True)
+@dataclass
 class RankStratum:
     """A node with its conditions on the parameters, and the parameters that they are solved for, if they can be."""
 
@@ -420,7 +420,7 @@ def _linear(factor: Scalar, signs: Mapping[str, str]) -> tuple[dict[str, Scalar]
 System: TypeAlias = tuple[Scalar, ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class RankConstancy:
     """The domain on which the rank at the roots of a factor is the generic one: the complement of some strata.
 

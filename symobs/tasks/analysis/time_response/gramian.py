@@ -114,7 +114,7 @@ def _pair_seen(A: Matrix, C: Matrix, plant: StateSpace, horizon: Any) -> tuple[M
     return A * 0, rows.select(range(int(horizon.fraction()) * C.shape[0]), range(plant.order))
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class Gramian(DampingCases):
     """W with W = ∫ of its integrand (checked by differentiation), its determinant, Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, and the kernel."""
 

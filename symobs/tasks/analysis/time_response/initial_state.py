@@ -81,7 +81,7 @@ def derivatives_at_zero(free: Table, count: int) -> list[Scalar]:
     return found
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class InitialState(OfTheInitialState):
     """x₀ with y = C (e^{At} x₀ + x_f) + D u, where x_f′ = A x_f + B u and x_f(0) = 0; or the proof that there is none."""
 
@@ -515,7 +515,7 @@ def read_samples(value: object, plant: StateSpace, name: str, rows: int) -> Matr
     return found
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class InitialStateOfSamples(InitialState):
     """x₀ with O x₀ = r, the samples without the forced output; or the proof that there is none."""
 

@@ -72,7 +72,7 @@ _MOST_TERMS = 16
 END = Scalar.symbol("T")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class InitialStateCovariance(OfTheInitialState):
     """Σ = Σ_R + Σ_Q with W Σ_R W = S_R and W Σ_Q W = S_Q, the two integrals checked by differentiation."""
 

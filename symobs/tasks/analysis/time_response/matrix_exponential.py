@@ -78,7 +78,7 @@ def require_continuous(plant: StateSpace, task_name: str) -> None:
         raise InputError(message, where="plant.A", repair="give the parameter another name")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class MatrixExponential(DampingCases):
     """Φ(t) with Φ′ = A Φ and Φ(0) = I, which has one solution."""
 
@@ -282,7 +282,7 @@ def powers_of(A: Matrix, variable: str) -> Matrix:
     return reduce(add, (matrix * value for value, matrix in matrix_power(A, variable))).normal()
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class MatrixPower(MatrixExponential):
     """Aᵏ."""
 

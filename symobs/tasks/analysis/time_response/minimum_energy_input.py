@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from symobs.system.specification import Horizon, MatrixText, Name
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class MinimumEnergyInput(DampingCases):
     """λ with W λ = d, the input u = Bᵀ e^{Aᵀ(T−t)} λ and its energy dᵀ λ; or w with wᵀ [B, AB, …] = 0 and wᵀ d ≠ 0.
 

@@ -278,7 +278,7 @@ def _end(matrix: Matrix) -> Fraction:
     return rounded_up(max(times)) if times else _ANY
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class Response(DampingCases):
     """x(t) with x′ = A x + B u and x(0) = x₀, which has one solution, and y = C x + D u."""
 
@@ -546,7 +546,7 @@ def response(
 # In discrete time: x(k + 1) = A x(k) + B u(k), where u is the output of a system of its own; together they have powers.
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class ResponseInSteps(Response):
     """x(k) with x(k + 1) = A x(k) + B u(k) and x(0) = x₀, and y = C x + D u."""
 

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from symobs.system.specification import Horizon, Name
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class ZeroOrderHold(DampingCases):
     """A_d = Φ(T) with Φ′ = A Φ and Φ(0) = I, and B_d = ∫₀ᵀ Φ(t) B dt."""
 

@@ -66,7 +66,7 @@ def stack_of(A: Matrix, C: Matrix, ideal: Ideal | None = None) -> tuple[Matrix, 
     return tuple(rows)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class TimeVaryingObservability(Result):
     """The stack N₀, …, N_{n−1} with its rank over the functions of t, and with a closed form Φ, Gramian and x₀.
 

@@ -118,7 +118,7 @@ def instant_where_not_zero(plant: StateSpace, interval: tuple[Scalar, Scalar] | 
     return None
 
 
-@dataclass(frozen=True)
+@dataclass
 class TimeVaryingRequest:
     """The specification beside the plant: interval, measured output and input."""
 

@@ -28,7 +28,7 @@ TERMS_UP_TO = 2_000
 _WITH_FUNCTIONS_UP_TO = 300
 
 
-@dataclass(frozen=True)
+@dataclass
 class Transition:
     """Φ(t, t₀), the class that it was found in, and the terms of the series where that ended."""
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrderCompensator
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class CompensatorDesign(OutputFeedback):
     """Both gains and F: det(sI − A + BK) = φ_c, det(sI − A + LC) = φ_o, F(s) = K (sI − A + BK + LC − LDK)⁻¹ L."""
 
@@ -122,7 +122,7 @@ class CompensatorDesign(OutputFeedback):
         return Matrix.block([[m.A, -(m.B @ K)], [L @ m.C, m.A - m.B @ K - L @ m.C]])
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class KnownState(OutputFeedback):
     """The law u = −K x of a state that is measured: a loop without an observer."""
 

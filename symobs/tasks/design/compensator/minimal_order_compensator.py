@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from symobs.tasks.result import Case
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class MinimalOrderCompensator(OutputFeedback):
     """Both gains and F(s) = (I + K₂ (sI − F)⁻¹ G − N D)⁻¹ (K₂ (sI − F)⁻¹ H + N), K M = [N K₂].
 

@@ -67,7 +67,7 @@ _FOUND = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class OutputFeedback(Result):
     """U = −F(s) Y from a state feedback and an observer, each with its own claims.
 

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 _LETTERS = {"E_d": "E", "S_w": "S", "V_w": "V"}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class DisturbanceObserver(Result):
     """L_x and L_w with det(sI − [A − L_x C, EV; −L_w C, S]) = φ(s), or the proof that there are none.
 

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
 _MATRICES = ("H", "T", "L", "F", "B_u", "B_y")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class UnknownInputObserver(Result):
     """An observer with T E = 0, T A − F T = B_y C, B_u = T B − B_y D, T + H C = I, det(sI − F) = φ(s), or why there is none.
 

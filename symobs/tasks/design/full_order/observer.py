@@ -84,7 +84,7 @@ def undetermined(page: Builder, name: str, stem: str, value: Matrix) -> None:
     page.set(name, Matrix.of([[page.name_coefficient(next(names), entry) for entry in row] for row in value.rows]))
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class ObserverDesign(GainDesign):
     """An observer gain: det(sI − A + LC) = φ(s)."""
 

@@ -36,7 +36,7 @@ class Formula(NamedTuple):
     summary: str
 
 
-@dataclass(frozen=True)
+@dataclass
 class PlacementMethod:
     """A way to the gain of an observable pair, dual for both tasks.
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from symobs.tasks.design.pole_placement.single_output import ObserverPair
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class StateFeedbackDesign(GainDesign):
     """A feedback gain: det(sI − A + BK) = φ(s)."""
 

@@ -58,7 +58,7 @@ if TYPE_CHECKING:
 _BUG = "please report this: it is a bug of symobs"
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class GainDesign(Result):
     """A gain with det(sI − A + LC) = φ(s) (det(sI − A + BK) = φ(s)), or the proof that there is none.
 
@@ -471,7 +471,7 @@ def page_style(method_name: str, plant: StateSpace, *, several: bool = False) ->
 # The letters and phrases of one side of pole placement: observers of (C, A) and state feedback of (A, B) are dual.
 
 
-@dataclass(frozen=True)
+@dataclass
 class PlacementProblem:
     """The words and letters of one side of pole placement."""
 

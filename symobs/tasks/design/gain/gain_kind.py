@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 Places: TypeAlias = tuple[tuple[int, int], ...]
 
 
-@dataclass(frozen=True)
+@dataclass
 class GivenGain:
     """A gain that was given: its polynomial is found, and nothing is asked of it."""
 
@@ -23,7 +23,7 @@ class GivenGain:
     exists: ClassVar[bool] = True
 
 
-@dataclass(frozen=True)
+@dataclass
 class AssignedGain:
     """A gain that assigns φ."""
 
@@ -33,7 +33,7 @@ class AssignedGain:
     exists: ClassVar[bool] = True
 
 
-@dataclass(frozen=True)
+@dataclass
 class DecoupledGain:
     """The member of the family of gains whose output errors (whose inputs' parts) are decoupled."""
 
@@ -43,7 +43,7 @@ class DecoupledGain:
     exists: ClassVar[bool] = True
 
 
-@dataclass(frozen=True)
+@dataclass
 class GainWithZeros:
     """A gain that assigns φ and has zeros in given places."""
 
@@ -53,7 +53,7 @@ class GainWithZeros:
     exists: ClassVar[bool] = True
 
 
-@dataclass(frozen=True)
+@dataclass
 class AlgebraicGain:
     """A gain with zeros in given places whose entries no square roots write: it stands beside the answer None."""
 
@@ -64,7 +64,7 @@ class AlgebraicGain:
     exists: ClassVar[bool] = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class NoGainWithZeros:
     """φ can be assigned, but no gain was found that has zeros in these places, or there is none."""
 
@@ -74,7 +74,7 @@ class NoGainWithZeros:
     exists: ClassVar[bool] = False
 
 
-@dataclass(frozen=True)
+@dataclass
 class UnassignableGain:
     """No gain assigns φ, with zeros in these places or without: a fixed mode is not among its roots."""
 

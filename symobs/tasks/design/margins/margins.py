@@ -53,7 +53,7 @@ _LOOPS = {
 }
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class Margins(Result):
     """The margins of the loop with the polynomials P and P + N, of a design or of a controller; none where it is not stable.
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from symobs.system.specification import Intensity, MatrixText, Name
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class OptimalFilter(OptimalGain):
     """L and P with AP + PAᵀ + GWGᵀ = LVLᵀ and LV = PCᵀ; in discrete time APAᵀ − P + GWGᵀ = L(V + CPCᵀ)Lᵀ."""
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from symobs.system.specification import Intensity, MatrixText, Name
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class OptimalFeedback(OptimalGain):
     """K and P with AᵀP + PA + Q = KᵀRK and RK = BᵀP + Nᵀ; in discrete time AᵀPA − P + Q = Kᵀ(R + BᵀPB)K."""
 

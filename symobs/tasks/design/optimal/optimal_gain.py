@@ -72,7 +72,7 @@ class Obstacle(NamedTuple):
     polynomial: Scalar
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class OptimalGain(Result):
     """P and the gain with their equations, and a stable loop; or why there is none."""
 

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 OPEN = frozenset({"zero_open", "zero_slow_open"})
 
 
-@dataclass(frozen=True)
+@dataclass
 class PlantZeros:
     """A plant's numerator as a unit and monic factors: those with stable roots, and the others, each with the reason."""
 
@@ -275,7 +275,7 @@ _NEAR = 10
 _HUGE = 100
 
 
-@dataclass(frozen=True)
+@dataclass
 class PoleWarning:
     """A phrase with what stands in its slots: a factor of the numerator, a pole of the plant, a number."""
 
@@ -362,7 +362,7 @@ def _of_gain(plant: StateSpace, polynomial: Factored, pair: ObserverPair) -> Ite
 FURTHER_LEFT = 5
 
 
-@dataclass(frozen=True)
+@dataclass
 class PoleRequest:
     """A radius, or a settling time and an overshoot."""
 
@@ -371,7 +371,7 @@ class PoleRequest:
     overshoot: Scalar | None = None
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class AdvisedPoles(Result):
     """φ = φ_z φ_r: φ_z has the plant's stable zeros, φ_r the remaining N poles.
 

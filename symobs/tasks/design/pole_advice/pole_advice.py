@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from symobs.tasks.design.pole_advice.advised_poles import PoleWarning
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class PoleAdvice(AdvisedPoles):
     """Advised poles, with their conditions on parameters and the advice elsewhere."""
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 ORDERS, LINKS, SHARES = 6, 6, 8
 
 
-@dataclass(frozen=True)
+@dataclass
 class BrunovskyChains:
     """The dual pair in Brunovsky's coordinates: T rows, the end of each chain, the outputs they belong to."""
 

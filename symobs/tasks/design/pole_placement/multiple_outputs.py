@@ -37,7 +37,7 @@ def pair_of(A: Matrix, C: Matrix, variable: str, equations: tuple[Scalar, ...] =
     return (ObserverPair if C.shape[0] == 1 else MultiOutputPair)(A, C, variable, equations)
 
 
-@dataclass(frozen=True)
+@dataclass
 class MultiOutputPair(ObserverPair):
     """A matrix A and several output rows c."""
 
@@ -187,7 +187,7 @@ def _coefficients(polynomial: Scalar, names: tuple[str, ...]) -> list[Scalar]:
 SCOPE = "every gain whose closed-loop matrix is cyclic, but for those where det X = 0"
 
 
-@dataclass(frozen=True)
+@dataclass
 class Family:
     """L = S (L₀ + (G X⁻¹)ᵀ) + N H: the seen part by Sylvester's equation, anything along the kernel N of 𝒪."""
 

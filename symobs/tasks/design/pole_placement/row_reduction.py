@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from symobs.tasks.design.pole_placement.single_output import ObserverPair
 
 
-@dataclass(frozen=True)
+@dataclass
 class Reduction:
     """One pole, pair or factor: the matrix, its row-reduced echelon form, and the vectors chosen.
 

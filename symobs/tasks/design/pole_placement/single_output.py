@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from symobs.system.specification import DesiredPolynomial
 
 
-@dataclass(frozen=True)
+@dataclass
 class ObserverPair:
     """A matrix A and one output row c."""
 

@@ -31,7 +31,7 @@ SYLVESTER = "bhattacharyya1982"
 WRITTEN_UP_TO = 60_000
 
 
-@dataclass(frozen=True)
+@dataclass
 class Sylvester:
     """The equation (A − L₀C)ᵀX − XF = CᵀG for an observable pair; w G = e₁ᵀ, `names` stand for the other rows.
 

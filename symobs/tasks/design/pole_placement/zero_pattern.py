@@ -72,7 +72,7 @@ def obstacles(equations: Sequence[Scalar]) -> tuple[Scalar, ...] | None:
     return tuple(value for value in found if not value.names.intersection(unknowns))
 
 
-@dataclass(frozen=True)
+@dataclass
 class RootGain:
     """A gain whose entries are polynomials in λ, a real root of an irreducible polynomial in λ."""
 

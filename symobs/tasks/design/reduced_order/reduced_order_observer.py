@@ -100,7 +100,7 @@ def _pivots(C: Matrix, ideal: Ideal | None) -> list[int]:
     return found
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class ReducedOrderObserver(Result):
     """An observer of order n − p: P A − F P = H C, G = P B − H D, M [C; P] = I, det(sI − F) = φ(s), P = R − L C.
 
@@ -305,7 +305,7 @@ class ReducedOrderObserver(Result):
         }
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class DependentOutputs(ReducedOrderObserver):
     """No observer of order n − p on a stratum: w C = 0 with w ≠ 0, so no [C; P] with n rows has an inverse."""
 

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from symobs.tasks.design.gain.gain_design import GainDesign
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class FeedforwardDesign(Result):
     """F with T = (C − DK)(sI − A + BK)⁻¹BF + DF and T(0) = I (T(1) = I in discrete time), or why there is none.
 
@@ -243,7 +243,7 @@ class FeedforwardDesign(Result):
         return {"v_r": self.plant.outputs, **self.loop.free_signals}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class StateFeedforward(FeedforwardDesign):
     """The feedforward of u = −K x + F v."""
 

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 _REPORTED = ("poles", "stable", "stable_if", "fixed_modes", "family")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class IntegralAction(Result):
     """K and k_I with det(sI − [A − BK, B k_I; −C + DK, −D k_I]) = φ(s), or the proof that there are none.
 

@@ -87,7 +87,7 @@ class Exogenous(NamedTuple):
 _LETTERS = {"S_w": "S", "Q_r": "Q", "E_d": "E"}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class OutputRegulation(Result):
     """Π and Γ that solve the regulator equations and K, or why there are none; with an observer of (x, w) where asked for.
 
@@ -301,7 +301,7 @@ class OutputRegulation(Result):
         return dict.fromkeys(("w_e", "w_hat"), self.exogenous.order)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class EstimatedOutputRegulation(OutputRegulation):
     """The regulator u = −K x̂ + (Γ + KΠ) ŵ with an observer of plant and exosystem."""
 

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from symobs.tasks.design.gain.gain_design import GainDesign
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass
 class TrackingDesign(Result):
     """K_d with A_d − A + BK_d = 0, or with (A_d − A + BK_d) V = 0 for one trajectory; or why there is none.
 
