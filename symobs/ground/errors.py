@@ -14,17 +14,22 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 
+_REPORT = "please report this: it is a bug of symobs"
+
+
 class SymobsError(Exception):
     """Base of all errors; `exit_code` is what the command line returns for it."""
 
     exit_code = 3
+    #: What helps where nothing else is said.
+    usual_repair = ""
 
     def __init__(self, message: str, *, where: str = "", repair: str = "", **facts: object) -> None:
         """Keep the facts: the message, the place, and the repair."""
         super().__init__(message)
         self.message = message
         self.where = where
-        self.repair = repair
+        self.repair = repair or self.usual_repair
         self.facts = facts
 
     def __str__(self) -> str:
@@ -133,18 +138,21 @@ class CertificateRejected(SymobsError):
     """A result does not meet its own claim: a bug of symobs, never of the input, unless it is `Undecided`."""
 
     exit_code = 1
+    usual_repair = _REPORT
 
 
 class Undecided(CertificateRejected):
     """A result is beyond the limits of what can be computed or checked; the message is the reason."""
 
     exit_code = 5
+    usual_repair = ""
 
 
 class DerivationRejected(SymobsError):
     """A line of a derivation is false: always a bug of symobs, never of the input."""
 
     exit_code = 1
+    usual_repair = _REPORT
 
 
 class WrongKind(TypeError, ValueError):

@@ -260,8 +260,7 @@ def _check(found: tuple[Matrix, Matrix, Matrix, Matrix], G: Matrix, variable: st
     )
     ranks = {rank(_observability_matrix(A, C)), rank(_observability_matrix(A.T, B.T))}
     if not right or ranks != {A.shape[0]}:
-        message = "the realisation found is none, or is not minimal"
-        raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        raise CertificateRejected("the realisation found is none, or is not minimal")
 
 
 # Series, parallel and feedback connections of systems in state space, with the conventions of python-control.

@@ -354,8 +354,7 @@ class EquationAuditor:
                 if verdict is not None and verdict.holds and verdict.right != right:
                     return self._confirmed(verdict.right)
                 if verdict is not None:
-                    message = f"the equation {right} does not hold"
-                    raise CertificateRejected(message, repair="please report this: it is a bug of symobs", claim=right)
+                    raise CertificateRejected(f"the equation {right} does not hold", claim=right)
         except BudgetExceeded:
             return ""
         finally:

@@ -249,7 +249,7 @@ def _written(picture: Drawn, document: Document, suffix: str) -> bytes:
 def _require_checked(picture: Picture, result: Result) -> None:
     """Raise `DerivationRejected` unless the plot is one of the result's checked page."""
     if not is_shown(picture, result):
-        raise DerivationRejected("the page shows another picture", repair="please report this: it is a bug of symobs")
+        raise DerivationRejected("the page shows another picture")
 
 
 def is_shown(picture: Picture, result: Result) -> bool:

@@ -89,8 +89,7 @@ class Result(TaskTraits):
         except BEYOND_LIMITS as error:
             raise Undecided(f"{self.task} is undecided, its answer cannot be checked: {error}") from error
         except UNREADABLE as error:
-            message = f"the answer of {self.task} is no answer: {error}"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs") from error
+            raise CertificateRejected(f"the answer of {self.task} is no answer: {error}") from error
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the constructor arguments; unpickling checks all claims again."""
@@ -252,8 +251,7 @@ class Result(TaskTraits):
             established = written.check()
         for name, value in self.data.items():
             if name in established.values and established.values[name] != value:
-                message = f"the page speaks of another {name}"
-                raise DerivationRejected(message, repair="please report this: it is a bug of symobs", line=name)
+                raise DerivationRejected(f"the page speaks of another {name}", line=name)
         return written
 
     @property

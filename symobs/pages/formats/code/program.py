@@ -176,8 +176,7 @@ def _proof(plant: StateSpace, controller: Controller, numbers: Realisation, peri
         repair = "choose a shorter period, or other poles" if period is not None else "choose other poles"
         raise InputError(message, where=controller.name, repair=repair)
     if not (is_in_disc(enclosed, margin) if in_disc else is_left_of(enclosed, margin, size_of(enclosed))):
-        message = f"the margin {margin} of {of} is not proved"
-        raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        raise CertificateRejected(f"the margin {margin} of {of} is not proved")
     bound = f"|z| < {_exact_decimal(1 - margin)}" if in_disc else f"Re s < -{_exact_decimal(margin)}"
     return f"Proved for exactly these doubles: every eigenvalue of {of} has {bound}."
 

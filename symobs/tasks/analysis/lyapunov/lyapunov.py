@@ -99,7 +99,7 @@ class LyapunovSolution(Result):
             message = (
                 "there is no P exactly where an X shows that there is none, and one P where the determinant is not 0"
             )
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected(message)
         values = given_values | {"A": self.plant.matrices.A, "Q": self.weight, "image": _image(self.plant)}
         e = Environment(variable=self.plant.variable, values=values, signs=self.plant.symbols.signs)
         A, Q = e["A"], e["Q"]

@@ -244,7 +244,7 @@ def _stated(delta: Scalar, sign: str) -> Condition:
 
 def reject(message: str) -> NoReturn:
     """Refuse an answer that no claim could state."""
-    raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+    raise CertificateRejected(message)
 
 
 def rate_of(term: Term) -> Term:

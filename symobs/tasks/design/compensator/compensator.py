@@ -71,8 +71,7 @@ class CompensatorDesign(OutputFeedback):
     def claims(self) -> Iterator[Claim]:
         """Yield: K and L are the certified gains of the two designs; F is K times the resolvent times L."""
         if self.exists != (self.feedback.answer["K"] is not None and self.estimator.answer["L"] is not None):
-            message = "there is a compensator exactly where there are both gains"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("there is a compensator exactly where there are both gains")
         e = self._environment()
         yield from self.certified(e)
         if self.exists:

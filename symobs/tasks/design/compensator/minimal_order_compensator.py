@@ -69,8 +69,7 @@ class MinimalOrderCompensator(OutputFeedback):
         """Yield: K and L are the certified gains; F is what u = −K x̂ makes of y, or the law cannot be solved for u."""
         have = self.feedback.answer["K"] is not None and self.estimator.answer["L"] is not None
         if self.exists and not have:
-            message = "there is no compensator without both gains"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("there is no compensator without both gains")
         observer = self.estimator.answer
         known = {"F_z": observer["F"], "G_z": observer["G"], "H_z": observer["H"], "M_z": observer["M"]}
         values = letters_of(self.plant) | {"K": self.answer["K"], "L": self.answer["L"], "F": self.answer["F"]} | known

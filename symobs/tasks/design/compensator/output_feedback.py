@@ -174,8 +174,7 @@ class OutputFeedback(Result):
         """Yield that K and L are the certified gains of the two designs, which are for this plant."""
         for design in self.halves:
             if design.plant is not self.plant and letters_of(design.plant) != letters_of(self.plant):
-                message = f"{design.letter} is a gain for another plant"
-                raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+                raise CertificateRejected(f"{design.letter} is a gain for another plant")
             own, certified = self.answer[design.letter], design.answer[design.letter]
             if own is not certified:
                 yield Claim(relation(own, certified), environment, f"{design.letter} is the certified gain")

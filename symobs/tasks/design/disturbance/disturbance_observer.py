@@ -101,15 +101,14 @@ class DisturbanceObserver(Result):
     def _whole(self, gains: Mapping[str, Matrix]) -> Matrix:
         first, second = (gains.get(name, self.answer[name]) for name in self.gains)
         if first is None or second is None:
-            raise CertificateRejected("there are no such gains", repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("there are no such gains")
         return Matrix.block([[first], [second]])
 
     def claims(self) -> Iterator[Claim]:
         """Yield that the observer of plant and exosystem has the desired poles, and that it is theirs."""
         L_x, L_w, plant = self.answer["L_x"], self.answer["L_w"], self.plant
         if (L_x is None) != (self.inner.answer["L"] is None) or (L_x is None) != (L_w is None):
-            message = "there are gains exactly where plant and exosystem have an observer"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("there are gains exactly where plant and exosystem have an observer")
         values = letters_of(plant) | {name: getattr(self.exosystem, of) for name, of in _LETTERS.items()}
         values |= {"phi": self.answer["polynomial"]}
         gains = {} if L_x is None else {"L_x": L_x, "L_w": L_w}

@@ -159,8 +159,7 @@ class UnknownInputObserver(Result):
             or not is_whole
             or (answer["B_u"] is None) == (has_gain and m.has_input)
         ):
-            message = "there is an observer exactly where there are H and a gain of the pair (C, T A)"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("there is an observer exactly where there are H and a gain of the pair (C, T A)")
         values = letters_of(plant) | {"E_d": self.disturbance_input, "phi": answer["polynomial"]}
         known = {name: value for name, value in answer.items() if value is not None}
         e = Environment(variable=plant.variable, values=values | known)

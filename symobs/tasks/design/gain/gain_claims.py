@@ -75,8 +75,7 @@ def excluded_claims(
     Where nothing is needed the answer says no more than that no gain was found: raises `CertificateRejected` if one is.
     """
     if not needed and with_zeros(pair, desired, places) is not None:
-        message = f"a gain {letter_of_gain} with these zeros is found"
-        raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+        raise CertificateRejected(f"a gain {letter_of_gain} with these zeros is found")
     e = Environment(variable=pair.variable, relations=tuple(equations))
     for value in needed or ():
         says = f"with zeros there, {value} lies in the ideal of the coefficients of det(s*I - A + L*C) - phi(s)"

@@ -54,10 +54,6 @@ if TYPE_CHECKING:
     from symobs.tasks.design.pole_placement.single_output import ObserverPair
 
 
-#: What is said of a claim that only a fault of the program can break.
-_BUG = "please report this: it is a bug of symobs"
-
-
 @dataclass
 class GainDesign(Result):
     """A gain with det(sI − A + LC) = φ(s) (det(sI − A + BK) = φ(s)), or the proof that there is none.
@@ -192,9 +188,9 @@ class GainDesign(Result):
             self.kind,
         )
         if (self.pair.A, self.pair.c) != (own.A, own.c):
-            raise CertificateRejected("the witness speaks of another plant", repair=_BUG)
+            raise CertificateRejected("the witness speaks of another plant")
         if kind.exists != (gain is not None):
-            raise CertificateRejected(f"a design has a gain {self.letter} exactly where its kind says so", repair=_BUG)
+            raise CertificateRejected(f"a design has a gain {self.letter} exactly where its kind says so")
         e = Environment(variable=self.plant.variable)
         if kind.desired is not None and phi is not kind.desired.polynomial:
             yield Claim(relation(phi, kind.desired.polynomial), e, "the polynomial is the one asked for")

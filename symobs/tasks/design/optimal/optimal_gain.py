@@ -60,7 +60,6 @@ MOST_STATES, MOST_WITH_PARAMETERS = 12, 2
 _EXACT_UP_TO = 6
 #: An exact solution whose entries have more terms says less than its digits.
 _MOST_TERMS = 60
-_BUG = "please report this: it is a bug of symobs"
 
 
 class Obstacle(NamedTuple):
@@ -151,7 +150,7 @@ class OptimalGain(Result):
         answer, digits, regulator = self.answer, self.answer["digits"], self.regulator
         has_P = answer["P"] is not None or digits is not None
         if [has_P, answer["obstacle"] is not None, answer["question"] is not None].count(True) != 1:
-            raise CertificateRejected("there is a P, an obstacle, or an open question", repair=_BUG)
+            raise CertificateRejected("there is a P, an obstacle, or an open question")
         signs = self.plant.symbols.signs
         yield Statement(
             "the weight of the input is positive definite", lambda: _shown(_is_definite(regulator.R, signs))

@@ -473,7 +473,7 @@ class AdvisedPoles(Result):
         whole = rest.degree(variable) == self.count and rest.coefficients(variable)[0].is_one
         if not stable or not whole or self.answer["zeros"] != self.zeros.polynomial:
             message = "the poles advised are the stable zeros and as many more in the left half-plane as are missing"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected(message)
 
     def _claims_of_pair(self, e: Environment) -> Iterator[Claim]:
         """Yield σT = 4, e^{−σT} ≤ 1/50, exp(−πσ/ω) ≤ M, and φ_r as the pair and what lies further left."""
@@ -483,8 +483,7 @@ class AdvisedPoles(Result):
         yield Claim(relation(product, 4), e, "sigma*T = 4")
         yield Claim(relation(function("exp", -product), "<=", Scalar.of(Fraction(1, 50))), e)
         if (omega_d is None) != (self.count < 2):
-            message = "two poles and more begin with a pair"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("two poles and more begin with a pair")
         if omega_d is not None:
             yield Claim(relation(overshoot_of(omega_d / sigma), "<=", request.overshoot), e)
         expected = product_of(dominated(self.count, sigma, omega_d, self.plant.variable))

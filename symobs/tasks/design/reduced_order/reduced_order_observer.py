@@ -199,13 +199,11 @@ class ReducedOrderObserver(Result):
         yield Claim(relation(parts.A12, inner.plant.matrices.C), e, "the inner gain is one for A12")
         yield Claim(relation(e["phi"], inner.answer["polynomial"]), e, "the inner gain is one for phi(s)")
         if (answer["L"] is None) != (inner.answer["L"] is None):
-            message = "there is a reduced-order observer exactly where the pair (A12, A22) has a gain"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("there is a reduced-order observer exactly where the pair (A12, A22) has a gain")
         if answer["L"] is None:
             return
         if (answer["G"] is None) == plant.matrices.has_input:
-            message = "G belongs to a plant with an input, and to no other"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("G belongs to a plant with an input, and to no other")
         A, C, L, F, H, M, R = (e[name] for name in ("A", "C", "L", "F", "H", "M", "R"))
         P = R - L @ C
         yield Claim(relation(P @ A - F @ P, H @ C), e, "P*A - F*P = H*C")
@@ -319,8 +317,7 @@ class DependentOutputs(ReducedOrderObserver):
         yield Claim(relation(w @ e["C"], Matrix.zeros(1, m.C.shape[1])), e, "w*C = 0")
         yield Claim(relation(w, "!==", Matrix.zeros(1, m.C.shape[0])), e, "w is not 0")
         if any(self.answer[name] is not None for name in "LTFGHM"):
-            message = "outputs that depend on each other leave no observer of order n - p"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("outputs that depend on each other leave no observer of order n - p")
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:

@@ -116,7 +116,7 @@ class IntegralAction(Result):
     def _whole(self, gains: Mapping[str, Matrix]) -> Matrix:
         first, second = (gains.get(name, self.answer[name]) for name in self.gains)
         if first is None or second is None:
-            raise CertificateRejected("there are no such gains", repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("there are no such gains")
         return Matrix.block([[first, -second]])
 
     def claims(self) -> Iterator[Claim]:
@@ -124,10 +124,9 @@ class IntegralAction(Result):
         K, k_I, w, plant = (*(self.answer[name] for name in ("K", "k_I", "w")), self.plant)
         if (K is None) != (w is not None or self.loop.answer["K"] is None) or (K is None) != (k_I is None):
             message = "there are gains exactly where plant and integrator have a feedback and the outputs can follow"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected(message)
         if self.answer["polynomial"] != self.desired.polynomial:  # also where there are no gains to have it
-            message = "the polynomial is the one asked for"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected("the polynomial is the one asked for")
         values = letters_of(plant) | {"D": plant.matrices.D, "K": K, "k_I": k_I, "w": w}
         known = {name: value for name, value in values.items() if value is not None}
         relations = identities([part for part in (K, k_I) if part is not None])[1]

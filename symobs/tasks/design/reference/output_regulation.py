@@ -172,7 +172,7 @@ class OutputRegulation(Result):
             or (self.estimator is not None and self.estimator.plant is not plant)
         ):
             message = "the regulator equations have a solution exactly where nothing shows that they have none"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected(message)
         e = _environment(plant, self.exogenous, answer)
         A, B, C, D, S, Q, E = (e[name] for name in ("A", "B", "C", "D", "S_w", "Q_r", "E_d"))
         if K is not self.loop.answer["K"]:
@@ -427,8 +427,7 @@ def _blocking_claims(
         e = Environment(variable=plant.variable, values={"w": row, "S_w": S}, relations=relations)
         rest = S.characteristic_polynomial(plant.variable) / factor
         if not plant.equations and not rest.is_polynomial_in(plant.variable):
-            message = f"{factor} is no factor of the characteristic polynomial of S"
-            raise CertificateRejected(message, repair="please report this: it is a bug of symobs")
+            raise CertificateRejected(f"{factor} is no factor of the characteristic polynomial of S")
         w = e["w"]
         annuls = relation(w @ Term(Literal(matrix), e), Matrix.zeros(1, matrix.shape[1]))
         yield Claim(annuls, e, f"w*[A - lam*I, B; C, D] = 0 where {factor} = 0")
