@@ -75,7 +75,7 @@ def own_phrases(monkeypatch: pytest.MonkeyPatch) -> None:
 # -- which tests -------------------------------------------------------------------------------------------------------
 
 #: Tests that were measured and take long, by file and name.
-SLOW = {*Path(__file__).with_name("slow.txt").read_text(encoding="utf-8").splitlines()}
+SLOW = {*Path(__file__).with_name("slow.txt").read_text("utf-8").splitlines()}
 _ALL_SLOW = re.compile(r"^pytestmark = pytest\.mark\.slow$", re.MULTILINE)
 
 
@@ -84,7 +84,7 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     chosen = config.option.markexpr
     if collection_path.suffix != ".py" or not chosen or config.args != config.getini("testpaths"):
         return None
-    text = collection_path.read_text(encoding="utf-8")
+    text = collection_path.read_text("utf-8")
     left_out = "not slow" in chosen and _ALL_SLOW.search(text)
     return True if left_out else None
 

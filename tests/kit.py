@@ -11,6 +11,7 @@ import pytest
 
 from symobs.exact import Matrix, Scalar
 from symobs.formula.expression import parse_scalar
+from symobs.system import StateSpace
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
@@ -36,6 +37,15 @@ def tabled(test: T) -> T:
 
 def _as_tuples(value: Any) -> Any:
     return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
+
+
+#: A servo with the output y = x₁.
+SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+
+
+def text_of(result: Any) -> str:
+    """Return the page of a result as text, its lines joined."""
+    return " ".join(str(result.to("text")).split())
 
 
 def scalar(text: str | int) -> Scalar:

@@ -54,7 +54,7 @@ class WorkedExample:
 def example(name: str) -> WorkedExample:
     """Return a worked example."""
     path = ROOT / "worked_examples" / f"{name}.toml"
-    text = path.read_text(encoding="utf-8")
+    text = path.read_text("utf-8")
     return WorkedExample(path, text, tomllib.loads(text, parse_float=str))
 
 
@@ -98,8 +98,8 @@ def solved(shown: list[WorkedExample], folder: Path) -> dict[str, str]:
         waiting = {name: pool.submit(solve, name) for name, path in files.items() if not path.exists()}
         for name, path in files.items():
             if name in waiting:
-                path.write_text(json.dumps(waiting[name].result()), encoding="utf-8")
-            kept[name] = json.loads(path.read_text(encoding="utf-8"))
+                path.write_text(json.dumps(waiting[name].result()), "utf-8")
+            kept[name] = json.loads(path.read_text("utf-8"))
     return kept
 
 

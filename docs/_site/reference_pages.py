@@ -52,7 +52,7 @@ def tasks_page() -> str:
 
 def answers() -> dict[str, dict[str, str]]:
     """The fields of the result of each task with their types, as the stub of the package has them."""
-    tree = ast.parse((ROOT / "symobs" / "__init__.pyi").read_text(encoding="utf-8"))
+    tree = ast.parse((ROOT / "symobs" / "__init__.pyi").read_text("utf-8"))
     kinds = {
         node.name: {f.name: ast.unparse(f.returns) for f in node.body if isinstance(f, ast.FunctionDef) and f.returns}
         for node in tree.body
@@ -134,7 +134,7 @@ def problem_file_page() -> str:
 def json_page() -> str:
     """What JSON has, by an example."""
     path = ROOT / "worked_examples" / "servo_observer.toml"
-    problem = read(path.read_text(encoding="utf-8"), path.name, path.parent)
+    problem = read(path.read_text("utf-8"), path.name, path.parent)
     text = str(render(problem.document(problem.solve()), "json"))
     return (
         "# Results in JSON\n\n`symobs solve FILE --format json` prints an object with a result for every task, whatever its\n"

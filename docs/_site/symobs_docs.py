@@ -53,14 +53,14 @@ def write_pages(app: Sphinx) -> None:
     app.symobs_fragments = gallery_pages.solved(shown, folder / "_cache")
     pages = {**reference_pages.pages(), **gallery_pages.pages(shown, app.symobs_fragments)}
     for name in ("changelog", "contributing"):
-        pages[f"{name}.md"] = linked((folder.parent / f"{name.upper()}.md").read_text(encoding="utf-8"))
+        pages[f"{name}.md"] = linked((folder.parent / f"{name.upper()}.md").read_text("utf-8"))
     for old in {str(path.relative_to(folder)) for path in folder.glob("gallery/**/*.md")} - set(pages):
         (folder / old).unlink()
     for name, text in pages.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        if not path.exists() or path.read_text(encoding="utf-8") != text:
-            path.write_text(text, encoding="utf-8")
+        if not path.exists() or path.read_text("utf-8") != text:
+            path.write_text(text, "utf-8")
 
 
 def linked(text: str) -> str:

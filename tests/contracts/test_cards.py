@@ -22,6 +22,7 @@ from symobs.pages.printers.root_lists import TEXT, listed
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.problem import read
 from symobs.tasks.result.output_methods import to_json
+from tests.kit import text_of
 from tests.support.examples import EXAMPLES, problem_of, results_of
 
 if TYPE_CHECKING:
@@ -112,7 +113,7 @@ def test_a_pair_with_a_letter_is_no_multiple_of_pi_and_a_parameter_may_be_called
     plant = StateSpace("[0 1; 0 0]", "[0; 1/I]", symbols={"I": "positive", "p": "positive"})
     result = state_feedback(plant, poles="-p + p*i, -p - p*i")
     assert_read_back(result, *cards(result, ["poles"]))
-    page = " ".join(result.to("text").split())
+    page = text_of(result)
     assert "-p ± p i" in page
     assert "K = [2p² - 0 2p - 0] V_c⁻¹ = [2p² 2p] ⎡\U0001d5a8 0⎤" in page
     assert "det(sI - A + B K) = s² + 2p s + 2p²" in page

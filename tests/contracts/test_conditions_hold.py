@@ -20,6 +20,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named, symbols_in
 from symobs.problem import Problem, read
 from symobs.system.conditions import never_zero
+from tests.kit import text_of
 from tests.support.algebra import (
     assignable,
     at_number,
@@ -299,7 +300,7 @@ def test_which_gains_survive_the_loss_of_observability(poles: list[int], survivo
         assert found.verdict == ("yes" if c in survivors else "no")
         assert [str(root) for root in found.fields["fixed_modes"]] == [str(mode)]
         HOLDS["observer"](found, at)
-    page = " ".join(str(result.to("text")).split())
+    page = text_of(result)
     for where, mode in (("c = 1", -1), ("c = 1/2", -2)):
         assert f"{where} │ {mode} │ {'this L, among others' if mode in poles else 'none'}" in page
     if -2 not in poles:  # the factor c − 1 of det 𝒪 cancelled from the gain, which therefore survives at c = 1

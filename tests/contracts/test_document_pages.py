@@ -31,13 +31,13 @@ def pages_written() -> set[str]:
 
 
 def test_every_page_is_in_the_contents_of_the_site(written: set[str]) -> None:
-    contents = (ROOT / "docs" / "index.md").read_text(encoding="utf-8").splitlines()
+    contents = (ROOT / "docs" / "index.md").read_text("utf-8").splitlines()
     assert written - {"index"} - set(contents) == set()
 
 
 def test_every_page_is_run_somewhere(written: set[str]) -> None:
     others = [path for path in (ROOT / "tests").rglob("test_*.py") if path.name != "test_document_pages.py"]
-    tests = "".join(path.read_text(encoding="utf-8") for path in others)
+    tests = "".join(path.read_text("utf-8") for path in others)
     assert written - WITHOUT - set(PAGES) == ELSEWHERE
     for name in ELSEWHERE:
         assert re.search(rf'docs(?:/|" / "){name}\.md"', tests), name

@@ -14,7 +14,7 @@ ROOM = re.compile(r"^\| `(\w+)` \|", re.MULTILINE)
 
 
 def text_of(page: str) -> str:
-    return (ROOT / page).read_text(encoding="utf-8")
+    return (ROOT / page).read_text("utf-8")
 
 
 @pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md", "docs/measurements.md"])

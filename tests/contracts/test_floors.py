@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 SOURCES = sorted((ROOT / "symobs").rglob("*.py"))
-TEXTS = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in SOURCES}
+TEXTS = {path.relative_to(ROOT).as_posix(): path.read_text("utf-8") for path in SOURCES}
 #: The lines of all modules that say "(trusted)" at their beginning: whoever audits the checks reads these.
 MOST_TRUSTED = 5400
 #: Who loads modules by name: the package, the registry, the command line, the tables of phrases and of kinds of work.

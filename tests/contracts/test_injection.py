@@ -88,7 +88,7 @@ def test_a_file_without_a_title_is_titled_by_its_name(require_tool: RequireTool,
     texts = [text for text in TEXTS if printable(text) and "/" not in text and 0 < len(text.encode()) < 200]
     texts = [text for text in texts if "CANARY" not in text and "OWNED" not in text and text.strip() == text][::3]
     for text in texts:
-        (tmp_path / f"{text}.toml").write_text(problem(""), encoding="utf-8")
+        (tmp_path / f"{text}.toml").write_text(problem(""), "utf-8")
     names = [f"./{text}.toml" for text in texts]
     before = set(tmp_path.iterdir())
     run = inside("sheet", *names, "--questions", "-o", "out.pdf", folder=tmp_path)
@@ -137,11 +137,11 @@ def test_what_reaches_a_template_of_the_user_is_escaped(require_tool: RequireToo
     body = "\\VAR{title}\n\n\\VAR{source}\n\n\\VAR{title}\\VAR{source}\n\n\\textbf{\\VAR{title}} \\VAR{body}"
     own = tmp_path / "own"
     own.mkdir()
-    (own / "article.tex").write_text(article([body]).replace(r"\begin{document}", _COMMANDS), encoding="utf-8")
+    (own / "article.tex").write_text(article([body]).replace(r"\begin{document}", _COMMANDS), "utf-8")
     pages: list[str] = []
     head, texts = "", part(tmp_path, 301)
     for text in texts:
-        (tmp_path / "p.toml").write_text(problem(text, text), encoding="utf-8")
+        (tmp_path / "p.toml").write_text(problem(text, text), "utf-8")
         run = inside("solve", "p.toml", "--templates", "own", folder=tmp_path)
         assert run.code == 0, run.err
         head, _, rest = run.out.partition(r"\begin{document}")

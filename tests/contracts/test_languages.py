@@ -26,6 +26,7 @@ from symobs.problem import read
 from symobs.problem.question import question_of
 from symobs.proof.derivation import RegionSummary, Section
 from symobs.tasks.result import Document, render
+from tests.kit import SERVO
 from tests.support.examples import document_of
 from tests.support.paths import ROOT
 from tests.support.problems.steps import HandWritten
@@ -102,10 +103,10 @@ def test_what_is_missing_or_wrong_is_named_with_its_file(
     copy: Path, file: str, old: str | re.Pattern[str], new: str, said: str
 ) -> None:
     path = copy / file
-    text = path.read_text(encoding="utf-8")
+    text = path.read_text("utf-8")
     changed = text.replace(old, new) if isinstance(old, str) else old.sub(new, text)
     assert changed != text
-    path.write_text(changed, encoding="utf-8")
+    path.write_text(changed, "utf-8")
     found = list(faults(copy))
     assert any(said in fault for fault in found), found
     assert all(fault.startswith(str(path)) for fault in found)
@@ -125,11 +126,9 @@ def test_a_third_language_is_one_folder(tmp_path: Path) -> None:
     shutil.copytree(GERMAN, folder)
     for name in phrases_of_modules():
         path = folder / f"{name}.toml"
-        path.write_text(
-            re.sub(r'(?m)^(.*?) = "(.*)"$', r'\1 = "⟨\2⟩"', path.read_text(encoding="utf-8")), encoding="utf-8"
-        )
-    words = (folder / "words.toml").read_text(encoding="utf-8").replace('code = "de"', 'code = "xx"')
-    (folder / "words.toml").write_text(words, encoding="utf-8")
+        path.write_text(re.sub(r'(?m)^(.*?) = "(.*)"$', r'\1 = "⟨\2⟩"', path.read_text("utf-8")), encoding="utf-8")
+    words = (folder / "words.toml").read_text("utf-8").replace('code = "de"', 'code = "xx"')
+    (folder / "words.toml").write_text(words, "utf-8")
     program = (
         "import symobs; from symobs.formula.phrases.languages import languages;"
         "print(languages(), symobs.__file__);"
@@ -165,7 +164,7 @@ def test_a_german_page_has_no_english_word(name: str) -> None:
 
 
 def test_both_languages_are_told_side_by_side() -> None:
-    result = symobs.observer(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=["-5/2", -3])
+    result = symobs.observer(SERVO, poles=["-5/2", -3])
     alone = {code: result.to("text", language=code) for code in languages()}
     assert len(set(alone.values())) == len(alone)
     assert result.to("text") == alone["en"]
@@ -252,7 +251,7 @@ def test_a_problem_file_names_its_language() -> None:
 
 def test_the_command_line_names_a_language(tmp_path: Path) -> None:
     path = tmp_path / "p.toml"
-    path.write_text(PROBLEM.format(extra='language = "de"'), encoding="utf-8")
+    path.write_text(PROBLEM.format(extra='language = "de"'), "utf-8")
 
     def told(*arguments: str) -> str:
         return inside(*arguments, "--format", "text").out
@@ -272,14 +271,14 @@ def test_the_command_line_names_a_language(tmp_path: Path) -> None:
 
 def test_a_phrase_without_a_translation_is_printed_in_english(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     words, german = copy / "words.toml", language_named("de")
-    words.write_text(words.read_text(encoding="utf-8").replace('code = "de"', 'code = "yy"'), encoding="utf-8")
+    words.write_text(words.read_text("utf-8").replace('code = "de"', 'code = "yy"'), "utf-8")
     (copy / "gain.toml").unlink()
     monkeypatch.setattr(module, "_folders", lambda: {"yy": copy})
     found = language_named("yy")
     missing = phrases_of_modules()["gain"]
     assert {key: found.phrases[key] for key in missing} == missing
     assert all(found.phrases[key] == german.phrases[key] for key in found.phrases.keys() - missing)
-    (copy / "words.toml").write_text('[WORDS]\ncode = "zz"\n', encoding="utf-8")
+    (copy / "words.toml").write_text('[WORDS]\ncode = "zz"\n', "utf-8")
     monkeypatch.setattr(module, "_folders", lambda: {"zz": copy})
     module._read.cache_clear()
     with pytest.raises(ValueError, match=r"words\.toml"):
@@ -291,4 +290,4 @@ def test_every_file_of_a_language_is_read() -> None:
         names = {path.stem for path in folder.iterdir()}
         assert names == {*phrases_of_modules(), "words"}
         for path in folder.iterdir():
-            tomllib.loads(path.read_text(encoding="utf-8"))
+            tomllib.loads(path.read_text("utf-8"))

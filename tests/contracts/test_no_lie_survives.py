@@ -27,6 +27,7 @@ from symobs.proof.derivation.steps import everything_in
 from symobs.proof.derivation.wording_check import obligations
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.gain.gain_design import GainDesign
+from tests.kit import SERVO
 from tests.support.algebra import determinant, multiply, observability_rows, rank_of, transposed
 from tests.support.derivations import World, is_true, plus, still_true, times
 from tests.support.examples import EXAMPLES, results_of
@@ -308,7 +309,6 @@ def plain_values(here: Environment) -> str:
 
 # -- lies that agree with each other -----------------------------------------------------------------------------------
 
-SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 HIDDEN = StateSpace("[-1 0; 0 -2]", "[0; 1]", "[0 1]")
 
 

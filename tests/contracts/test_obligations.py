@@ -330,5 +330,5 @@ def test_an_unknown_obligation_is_refused_with_its_phrase() -> None:
 
 @pytest.mark.parametrize("module", [check, wording_check], ids=["check", "wording_check"])
 def test_the_checker_knows_no_phrase(module: ModuleType) -> None:
-    tree = ast.parse(Path(str(module.__file__)).read_text(encoding="utf-8"))
+    tree = ast.parse(Path(str(module.__file__)).read_text("utf-8"))
     assert not {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)} & PHRASES.keys()

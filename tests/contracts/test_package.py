@@ -17,7 +17,7 @@ from tests.support.paths import ROOT
 if TYPE_CHECKING:
     from pathlib import Path
 
-SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
 VERSION = SETTINGS["project"]["version"]
 INFO = f"symobs-{VERSION}.dist-info"
 
@@ -82,12 +82,12 @@ def test_metadata(wheel: dict[str, bytes]) -> None:
 def test_the_source_distribution_has_what_the_readme_links_to() -> None:
     included = SETTINGS["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]
     assert [path for path in included if not (ROOT / path.lstrip("/")).exists()] == []
-    links = re.findall(r"\]\((?!https?:)([^)#\s]+)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    links = re.findall(r"\]\((?!https?:)([^)#\s]+)\)", (ROOT / "README.md").read_text("utf-8"))
     assert links
     assert [link for link in links if not any(f"/{link}".startswith(path) for path in included)] == []
 
 
 def test_the_citation_is_of_this_version() -> None:
-    lines = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    lines = (ROOT / "CITATION.cff").read_text("utf-8").splitlines()
     assert f"version: {VERSION}" in lines
-    assert f"## [{VERSION}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8").splitlines()
+    assert f"## [{VERSION}]" in (ROOT / "CHANGELOG.md").read_text("utf-8").splitlines()

@@ -56,7 +56,7 @@ def is_literal(node: ast.AST) -> bool:
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_a_module_of_phrases_contains_only_literal_tables(path: Path) -> None:
-    assert faults(path.read_text(encoding="utf-8")) == []
+    assert faults(path.read_text("utf-8")) == []
 
 
 @pytest.mark.parametrize(
@@ -83,7 +83,7 @@ def test_every_phrase_is_found() -> None:
 
 def keys_of(path: Path) -> list[str]:
     """The keys of the phrases in a file."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree = ast.parse(path.read_text("utf-8"))
     return [
         key
         for node in tree.body
@@ -124,7 +124,7 @@ def test_the_phrases_bring_no_code_with_them() -> None:
     folders = [name for name in loaded if not name.startswith("symobs.formula.phrases")]
     for name in folders:
         path = ROOT.joinpath(*name.split("."), "__init__.py")
-        assert [type(node) for node in ast.parse(path.read_text(encoding="utf-8")).body] == [ast.Expr], name
+        assert [type(node) for node in ast.parse(path.read_text("utf-8")).body] == [ast.Expr], name
 
 
 # -- what a task owns ---------------------------------------------------------------------------------------------------
@@ -144,7 +144,7 @@ def examples() -> dict[str, Path]:
     """The shortest worked example of every task."""
     found: dict[str, Path] = {}
     for path in sorted(ROOT.glob("worked_examples/*.toml"), key=lambda path: path.stat().st_size):
-        problem = tomllib.loads(path.read_text(encoding="utf-8"))
+        problem = tomllib.loads(path.read_text("utf-8"))
         for name in (problem.get("task"), *problem.get("tasks", ())):
             found.setdefault(name, path)
     return found

@@ -18,6 +18,7 @@ from symobs.pages.formats.json import result_object
 from symobs.problem import read
 from symobs.problem.expect import mismatches
 from symobs.proof.derivation.facts import PREDICATES, are_roots, polynomial_of
+from tests.kit import text_of
 from tests.support.algebra import evaluated as value
 
 
@@ -368,7 +369,7 @@ def test_several_fixed_modes_are_spoken_of_as_several(poles: str, said: str) -> 
         "specification": {"poles": poles},
     }
     (result,) = read(json.dumps(problem)).solve()
-    assert said in " ".join(str(result.to("text")).split())
+    assert said in text_of(result)
 
 
 # -- JSON: every field of the table, whatever the verdict ------------------------------------------------------------

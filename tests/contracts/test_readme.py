@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-README, GUIDE = ((ROOT / path).read_text(encoding="utf-8") for path in ("README.md", "docs/guide.md"))
+README, GUIDE = ((ROOT / path).read_text("utf-8") for path in ("README.md", "docs/guide.md"))
 #: What a page of the repository links to, from its own folder.
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]+)\)")
 
@@ -76,7 +76,7 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
     require_tool("latexmk")
     require_tool("pdflatex")
     _, lecture, _ = blocks("toml")
-    (tmp_path / "lecture.toml").write_text(lecture, encoding="utf-8")
+    (tmp_path / "lecture.toml").write_text(lecture, "utf-8")
     lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("symobs ")]
     assert len(lines) == 33
     for line in lines:
@@ -86,7 +86,7 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
         assert (run.code, run.err) == (0, ""), line
         assert run.out or "-o" in line
         if target:
-            (tmp_path / target).write_text(run.out, encoding="utf-8")
+            (tmp_path / target).write_text(run.out, "utf-8")
     assert (tmp_path / "region.svg").read_bytes() == (ROOT / ".github/pictures/region.svg").read_bytes()
     assert (tmp_path / "page.html").read_bytes().startswith(b"<!DOCTYPE html>")
     assert (tmp_path / "page.pdf").read_bytes().startswith(b"%PDF")
@@ -95,8 +95,8 @@ def test_shell_lines_run_on_the_problem_file(require_tool: Callable[[str], str],
 def test_the_template_replaces_one_block(tmp_path: Path) -> None:
     problem, *_ = blocks("toml")
     (template,) = blocks("tex")
-    (tmp_path / "problem.toml").write_text(problem, encoding="utf-8")
-    (tmp_path / "article.tex").write_text(template, encoding="utf-8")
+    (tmp_path / "problem.toml").write_text(problem, "utf-8")
+    (tmp_path / "article.tex").write_text(template, "utf-8")
     run = fresh("solve", "problem.toml", "--templates", ".", folder=tmp_path)
     assert (run.code, run.err) == (0, "")
     assert run.out.index(r"\usepackage{charter}") < run.out.index(r"\begin{document}")
@@ -106,7 +106,7 @@ def test_the_error_in_what_is_printed_is_found_as_shown(tmp_path: Path) -> None:
     mass = ROOT / "worked_examples" / "double_integrator_observer.toml"
     *_, printed = blocks("toml")
     (shown,) = blocks("text")
-    (tmp_path / "printed.toml").write_text(f"{mass.read_text(encoding='utf-8')}\n{printed}", encoding="utf-8")
+    (tmp_path / "printed.toml").write_text(f"{mass.read_text(encoding='utf-8')}\n{printed}", "utf-8")
     run = fresh("audit", "printed.toml", folder=tmp_path)
     assert (run.code, run.err) == (4, "")
     assert shown in run.out
@@ -114,7 +114,7 @@ def test_the_error_in_what_is_printed_is_found_as_shown(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", "docs/guide.md", "docs/architecture.md"])
 def test_every_link_leads_somewhere(page: str) -> None:
-    text = (ROOT / page).read_text(encoding="utf-8")
+    text = (ROOT / page).read_text("utf-8")
     links = LINK.findall(text)
     assert links
     assert [link for link in links if not (ROOT / page).parent.joinpath(link).exists()] == []

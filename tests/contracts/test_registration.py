@@ -250,7 +250,7 @@ class Copy:
     def add(self, path: str, text: str) -> None:
         assert not (self.checkout / path).exists()
         (self.checkout / path).parent.mkdir(exist_ok=True)
-        (self.checkout / path).write_text(text.lstrip(), encoding="utf-8")
+        (self.checkout / path).write_text(text.lstrip(), "utf-8")
 
     def run(self, *arguments: str, stdin: str = "") -> Run:
         return fresh(*arguments, folder=self.folder, checkout=self.checkout, stdin=stdin.encode())
@@ -377,5 +377,5 @@ def test_a_format_is_one_new_file(copy: Copy) -> None:
     assert solved.out.startswith("observer ")
     assert solved.out.endswith(" yes\n")
     assert copy.run("solve", "-", "-o", "page.dum", stdin=PROBLEM).code == 0
-    assert (copy.folder / "page.dum").read_text(encoding="utf-8") == solved.out
+    assert (copy.folder / "page.dum").read_text("utf-8") == solved.out
     assert "dummy" in copy.run("solve", "-", "--format", "hug", stdin=PROBLEM).err

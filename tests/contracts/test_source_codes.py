@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 CODE = re.compile(r"\bS[0-4]\b|\bS[0-4]-[A-Z]")
 #: Every way to print a page, but for the PDF, which is made of the LaTeX.
 FORMATS = ("latex", "beamer", "html", "markdown", "text", "json")
-DATA = {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in EXAMPLES}
+DATA = {path.stem: tomllib.loads(path.read_text("utf-8")) for path in EXAMPLES}
 OF_SOURCES = [path for path in EXAMPLES if any(CODE.search(row) for row in DATA[path.stem].get("id", []))]
 SHEET = "worked_examples/servo_feedforward.toml"
 
@@ -74,4 +74,4 @@ def test_no_document_contains_one() -> None:
         ROOT / "CONTRIBUTING.md",
         *sorted((ROOT / "docs").rglob("*.md")),
     ]
-    assert [path.name for path in pages if CODE.search(path.read_text(encoding="utf-8"))] == []
+    assert [path.name for path in pages if CODE.search(path.read_text("utf-8"))] == []

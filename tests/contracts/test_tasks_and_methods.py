@@ -22,6 +22,7 @@ import symobs
 from symobs.exact import Matrix, Scalar
 from symobs.ground.errors import CertificateRejected, InexactInput
 from symobs.tasks.result import Result, methods, tasks
+from tests.kit import SERVO
 from tests.support.algebra import assignable, random_fraction, seeded, value_at
 from tests.support.claims.asking import (
     DISTURBED,
@@ -123,7 +124,7 @@ def test_floats_in_a_specification_are_refused_with_the_repair(task: str, name: 
     for key in [key for key in others if key.startswith(stems) and key.endswith(("poles", "polynomial"))]:
         del others[key]
     with pytest.raises(InexactInput) as caught:
-        tasks()[task].function(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), **{**others, name: value})
+        tasks()[task].function(SERVO, **{**others, name: value})
     assert caught.value.where.startswith(f"specification.{name}")
     assert "exact value" in caught.value.repair
 

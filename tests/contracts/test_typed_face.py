@@ -87,13 +87,13 @@ plant.ordr
 
 
 def test_the_stub_says_what_the_registry_does() -> None:
-    assert typed_face.STUB.read_text(encoding="utf-8") == typed_face.stub(), "run python -m tests.programs.typed_face"
+    assert typed_face.STUB.read_text("utf-8") == typed_face.stub(), "run python -m tests.programs.typed_face"
 
 
 def wrong_lines(folder: Path, *command: str) -> set[int]:
     """The lines, counted from those of the misuses, in which a type checker finds an error."""
     file = folder / "uses.py"
-    file.write_text(USES.strip() + "\n" + MISUSES, encoding="utf-8")
+    file.write_text(USES.strip() + "\n" + MISUSES, "utf-8")
     run = subprocess.run([*command, str(file)], cwd=ROOT, capture_output=True, text=True, timeout=600, check=False)
     first = len(USES.strip().splitlines())
     found = re.findall(r"uses\.py:(\d+):(?:\d+:?)? (?:- )?error", run.stdout)
@@ -141,7 +141,7 @@ def test_a_task_is_described_by_its_parts(name: str) -> None:
 
 def test_what_the_face_names_is_there() -> None:
     """Every public name of the stub is one of the package, and every name that it imports one of its module."""
-    tree = ast.parse((ROOT / "symobs" / "__init__.pyi").read_text(encoding="utf-8"))
+    tree = ast.parse((ROOT / "symobs" / "__init__.pyi").read_text("utf-8"))
     for node in tree.body:
         if isinstance(node, ast.ImportFrom):
             module = importlib.import_module(node.module or "")

@@ -20,7 +20,7 @@ from tests.support.tools.document_pages import blocks
 if TYPE_CHECKING:
     from pathlib import Path
 
-PAGE_TEXT = (ROOT / "docs" / "variants.md").read_text(encoding="utf-8")
+PAGE_TEXT = (ROOT / "docs" / "variants.md").read_text("utf-8")
 
 
 def test_the_page_names_all_there_is() -> None:
@@ -36,20 +36,20 @@ def test_every_command_of_the_page_runs(tmp_path: Path) -> None:
     *files, (_, language, lines), _ = blocks("variants")
     assert (language, [file for file, *_ in files]) == ("sh", ["problem.toml", "students.csv", "answer.txt"])
     for file, _, text in files:
-        (tmp_path / file).write_text(text, encoding="utf-8")
-    (tmp_path / "students.csv").write_text("student;name\ns01;A\n=cmd();B\ns02;C\ns01;A\n", encoding="utf-8")
+        (tmp_path / file).write_text(text, "utf-8")
+    (tmp_path / "students.csv").write_text("student;name\ns01;A\n=cmd();B\ns02;C\ns01;A\n", "utf-8")
     runs = [inside(*shlex.split(line, comments=True)[1:], folder=tmp_path) for line in lines.splitlines()]
     assert [run.code for run in runs] == [0] * 7
     assert "variant 2" in runs[0].out
     assert "Variant 2 of seed 0." in runs[0].out
-    manifest = json.loads((tmp_path / "SET" / "manifest.json").read_text(encoding="utf-8"))
+    manifest = json.loads((tmp_path / "SET" / "manifest.json").read_text("utf-8"))
     assert [each["file"] for each in manifest["variants"]] == [f"variants/v00{i}.toml" for i in (1, 2, 3)]
     assert manifest["variants"][1]["answers"]["L"] == "[-4; 9]"
-    rows = (tmp_path / "SET" / "assignment.csv").read_text(encoding="utf-8").splitlines()
+    rows = (tmp_path / "SET" / "assignment.csv").read_text("utf-8").splitlines()
     assert rows[0] == "student,variant"
     assert [row.split(",")[0] for row in rows[1:]] == ["s01", "'=cmd()", "s02"]
-    assert len((tmp_path / "SET" / "report.md").read_text(encoding="utf-8").splitlines()) > 10
-    handout, key = ((tmp_path / name).read_text(encoding="utf-8") for name in ("handout.tex", "key.tex"))
+    assert len((tmp_path / "SET" / "report.md").read_text("utf-8").splitlines()) > 10
+    handout, key = ((tmp_path / name).read_text("utf-8") for name in ("handout.tex", "key.tex"))
     assert handout.count("variant ") == 3
     assert r"\begin{bmatrix}-4\\9\end{bmatrix}" not in handout
     assert r"\begin{bmatrix}-4\\9\end{bmatrix}" in key

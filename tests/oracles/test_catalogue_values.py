@@ -26,9 +26,7 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Environment
     from symobs.proof.derivation import Derivation
 
-VALUES: dict[str, list[str]] = tomllib.loads(
-    (ROOT / "tests/support/problems/catalogue_values.toml").read_text(encoding="utf-8")
-)
+VALUES: dict[str, list[str]] = tomllib.loads((ROOT / "tests/support/problems/catalogue_values.toml").read_text("utf-8"))
 pytestmark = pytest.mark.slow
 
 LINE = "line: "

@@ -69,7 +69,7 @@ HELD = {
 }
 #: Fractions know no roots: examples with roots in their plant are held to PARI.
 WITH_ROOTS = {"coupled_masses_irrational", "sensor_at_a_node"}
-TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in sorted(FOLDER.glob("*.toml"))}
+TEXTS = {path.stem: path.read_text("utf-8") for path in sorted(FOLDER.glob("*.toml"))}
 EXAMPLES = sorted(TEXTS.keys() - WITH_ROOTS)
 
 

@@ -432,7 +432,7 @@ def true_at(relation: str, point: Mapping[Any, Any]) -> bool:
 
 
 #: Regions are held to the roots at points, and to QEPCAD: see `test_region_points` and `regions_in_plain_fractions`.
-REGIONS = {path.stem for path in FOLDER.glob("*.toml") if "stability_region" in path.read_text(encoding="utf-8")}
+REGIONS = {path.stem for path in FOLDER.glob("*.toml") if "stability_region" in path.read_text("utf-8")}
 
 
 def test_every_worked_example_is_written_out_here() -> None:

@@ -16,6 +16,7 @@ import mpmath
 import pytest
 
 import symobs
+from tests.kit import SERVO
 from tests.support.tools import octave
 from tests.support.tools.modelica import Block
 
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 STEPS = 1000
-SERVO = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 PENDULUM = symobs.StateSpace(
     "[0 1 0 0; 0 0 -981/1000 0; 0 0 0 1; 0 0 10791/500 0]", "[0; 1; 0; -2]", "[1 0 0 0; 0 0 1 0]"
 )
@@ -138,7 +138,7 @@ def written(name: str) -> str:
 @pytest.mark.parametrize(("name", "hold"), CASES)
 def test_python(name: str, hold: str, tmp_path: Path) -> None:
     text = text_of(name, hold, "python")
-    (tmp_path / "program.py").write_text(text, encoding="utf-8")
+    (tmp_path / "program.py").write_text(text, "utf-8")
     kind = "Observer" if "observer" in name else "Compensator"
     driver = (
         f"import json, sys, program\nsystem = program.{kind}()\n"
@@ -167,7 +167,7 @@ def test_c(name: str, hold: str, tmp_path: Path) -> None:
     reads = "".join(
         f'if (scanf("%lf", &{s}[{i}]) != 1) return 1;\n        ' for s, k in sizes.items() for i in range(k)
     )
-    (tmp_path / "program.c").write_text(text, encoding="utf-8")
+    (tmp_path / "program.c").write_text(text, "utf-8")
     (tmp_path / "main.c").write_text(
         f'#include <stdio.h>\n#include "program.c"\nint main(void)\n{{\n'
         f"    {kind}_state state;{arrays} double v[{outputs}];\n"

@@ -24,7 +24,7 @@ from symobs import problem
 from symobs.ground.errors import SymobsError
 
 TABLE, BOOKS = (
-    tomllib.loads(Path(__file__).with_name(f"{name}_problems.toml").read_text(encoding="utf-8"))
+    tomllib.loads(Path(__file__).with_name(f"{name}_problems.toml").read_text("utf-8"))
     for name in ("published", "textbook")
 )
 s, z, t = sympy.symbols("s z t")

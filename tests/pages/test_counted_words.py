@@ -9,10 +9,7 @@ import pytest
 import symobs
 from symobs.formula.phrases import PHRASES
 from symobs.problem import read
-
-
-def text_of(result: object) -> str:
-    return " ".join(result.to("text").split())  # type: ignore[attr-defined]
+from tests.kit import text_of
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def page(site: Path, name: str) -> str:
-    return (site / f"{name}.html").read_text(encoding="utf-8")
+    return (site / f"{name}.html").read_text("utf-8")
 
 
 def test_the_reference_has_everything_there_is(site: Path) -> None:
@@ -76,13 +76,13 @@ def test_the_gallery_shows_solved_examples(site: Path) -> None:
     shown = page(site, "gallery/stability_region")
     assert 'href="examples/region_nonconvex.html"' in shown
     assert "<svg" in shown.partition('class="gallery"')[2].partition("</a>")[0]
-    found = (site / "searchindex.js").read_text(encoding="utf-8")
+    found = (site / "searchindex.js").read_text("utf-8")
     assert '"gallery/examples/bridge_circuit"' in found
 
 
 def test_links_within_the_site_lead_somewhere(site: Path) -> None:
     for path in site.rglob("*.html"):
-        for link in re.findall(r'(?:href|src)="([^"#?]+)', path.read_text(encoding="utf-8")):
+        for link in re.findall(r'(?:href|src)="([^"#?]+)', path.read_text("utf-8")):
             if not re.match(r"https?:|data:|mailto:", link):
                 assert (path.parent / link).exists(), f"{path.name}: {link}"
 

@@ -51,15 +51,15 @@ def folder_with_a_sheet(tmp_path: Path) -> Path:
     plant = '[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
     two = f'title = "Two parts"\nsource = "A book"\ntasks = ["observability", "characteristic_polynomial"]\n{plant}'
     one = 'title = "One part"\nsource = "Another book"\ntask = "observer"\n[symbols]\nc = "real"\n[plant]\nA = "[0 1; 0 0]"\n'
-    (tmp_path / "two.toml").write_text(two, encoding="utf-8")
-    (tmp_path / "one.toml").write_text(f'{one}C = "[c 0]"\n[specification]\npoles = [-1, -2]\n', encoding="utf-8")
-    (tmp_path / "sheet.toml").write_text(HEAD + PROBLEMS, encoding="utf-8")
+    (tmp_path / "two.toml").write_text(two, "utf-8")
+    (tmp_path / "one.toml").write_text(f'{one}C = "[c 0]"\n[specification]\npoles = [-1, -2]\n', "utf-8")
+    (tmp_path / "sheet.toml").write_text(HEAD + PROBLEMS, "utf-8")
     return tmp_path
 
 
 def written(folder: Path, more: str, *options: str, problems: str = PROBLEMS) -> str:
     """The sheet with further keys in its head."""
-    (folder / "sheet.toml").write_text(HEAD + more + problems, encoding="utf-8")
+    (folder / "sheet.toml").write_text(HEAD + more + problems, "utf-8")
     run = inside("sheet", "sheet.toml", *options, folder=folder)
     assert (run.code, run.err) == (0, "")
     return run.out
@@ -82,7 +82,7 @@ def test_nothing_in_a_sheet_is_interpreted(name: str, folder: Path) -> None:
     told = json.dumps(HOSTILE)
     keys = ("title", "course", "term", "number", "due", "instructor", "text")
     head = "".join(f"{key} = {told}\n" for key in keys)
-    (folder / "sheet.toml").write_text(f'{head}[[problem]]\nfile = "two.toml"\nhint = {told}\n', encoding="utf-8")
+    (folder / "sheet.toml").write_text(f'{head}[[problem]]\nfile = "two.toml"\nhint = {told}\n', "utf-8")
     run = inside("sheet", "sheet.toml", "--questions", "--format", name, folder=folder)
     assert run.code == 0
     assert len(re.findall(r"alert", run.out)) >= len(keys) + 1
@@ -104,7 +104,7 @@ def test_nothing_in_a_sheet_is_interpreted(name: str, folder: Path) -> None:
     ],
 )
 def test_a_date_is_written_in_the_language_of_the_sheet(language: str, due: str, said: str, folder: Path) -> None:
-    (folder / "sheet.toml").write_text(f'due = {due}\nlanguage = "{language}"\n{PROBLEMS}', encoding="utf-8")
+    (folder / "sheet.toml").write_text(f'due = {due}\nlanguage = "{language}"\n{PROBLEMS}', "utf-8")
     assert f"{said}\n" in inside("sheet", "sheet.toml", "--questions", "--format", "text", folder=folder).out
     whole = json.loads(inside("sheet", "sheet.toml", "--questions", "--format", "json", folder=folder).out)
     assert whole["due"] == due
@@ -222,13 +222,13 @@ def test_latex_names_the_picture_from_where_it_is_written(folder: Path) -> None:
     (folder / "elsewhere").mkdir()
     for target, place in (("elsewhere/sheet.tex", "../logo.png"), ("sheet.tex", "logo.png")):
         assert written(folder, 'logo = "logo.png"\n', "--questions", "-o", target) == ""
-        assert f"keepaspectratio]{{{place}}}" in (folder / target).read_text(encoding="utf-8")
+        assert f"keepaspectratio]{{{place}}}" in (folder / target).read_text("utf-8")
 
 
 def test_a_web_page_refuses_a_pdf_before_any_work(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("symobs.cli.shared.sheet_entries._entry", lambda *_: pytest.fail("work has started"))
     (folder / "logo.pdf").write_bytes(b"%PDF-1.5\n")
-    (folder / "sheet.toml").write_text(f'logo = "logo.pdf"\n{PROBLEMS}', encoding="utf-8")
+    (folder / "sheet.toml").write_text(f'logo = "logo.pdf"\n{PROBLEMS}', "utf-8")
     run = inside("sheet", "sheet.toml", "-o", "sheet.html", folder=folder)
     assert run.code == 3
     assert run.err == (
@@ -248,7 +248,7 @@ def test_a_sheet_is_named_alone(folder: Path) -> None:
 
 
 def test_errors_of_a_sheet_end_it_before_any_work(folder: Path) -> None:
-    (folder / "sheet.toml").write_text("corse = 1\n" + PROBLEMS.replace("one.toml", "gone.toml"), encoding="utf-8")
+    (folder / "sheet.toml").write_text("corse = 1\n" + PROBLEMS.replace("one.toml", "gone.toml"), "utf-8")
     run = inside("sheet", "sheet.toml", "-o", "sheet.tex", folder=folder)
     assert (run.code, len(run.lines)) == (3, 2)
     assert run.lines[0] == "sheet.toml, corse: unknown key; did you mean course?"
@@ -263,7 +263,7 @@ def test_a_sheet_from_standard_input_has_its_problems_here(folder: Path) -> None
 
 
 def test_a_problem_that_fails_keeps_its_place_and_its_points(folder: Path) -> None:
-    (folder / "one.toml").write_text("task = ", encoding="utf-8")
+    (folder / "one.toml").write_text("task = ", "utf-8")
     run = inside("sheet", "sheet.toml", "--questions", "--format", "text", folder=folder)
     assert run.code == 3
     assert "Problem 2. one (7 points)" in run.out
@@ -272,8 +272,8 @@ def test_a_problem_that_fails_keeps_its_place_and_its_points(folder: Path) -> No
 
 @pytest.mark.slow
 def test_children_write_the_same_sheet(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (folder / "broken.toml").write_text('task = "pbh"\n', encoding="utf-8")
-    (folder / "sheet.toml").write_text(f'{HEAD}{PROBLEMS}[[problem]]\nfile = "broken.toml"\n', encoding="utf-8")
+    (folder / "broken.toml").write_text('task = "pbh"\n', "utf-8")
+    (folder / "sheet.toml").write_text(f'{HEAD}{PROBLEMS}[[problem]]\nfile = "broken.toml"\n', "utf-8")
     arguments = ("sheet", "sheet.toml", "--format", "latex")
     alone = inside(*arguments, folder=folder)
     monkeypatch.setattr("symobs.cli.shared.sheet_entries._WORTH_CHILDREN", 2)
@@ -291,7 +291,7 @@ def test_what_takes_a_child_too_long_keeps_its_question(folder: Path, monkeypatc
     )
     symbols += "".join(f'\nc0{j} = "real"' for j in range(2, 6))
     hard = f'title = "Hard"\ntask = "observer"\n[symbols]\n{symbols}\n[plant]\nA = "[{A}]"\nC = "[{C}]"\n'
-    (folder / "one.toml").write_text(f'{hard}[specification]\npoles = "-1, -2, -3, -4, -5, -6"\n', encoding="utf-8")
+    (folder / "one.toml").write_text(f'{hard}[specification]\npoles = "-1, -2, -3, -4, -5, -6"\n', "utf-8")
     monkeypatch.setattr("symobs.cli.shared.sheet_entries._WORTH_CHILDREN", 2)
     run = inside("sheet", "sheet.toml", "--format", "json", "--timeout", "3", folder=folder)
     assert run.code == 5
@@ -316,7 +316,7 @@ def test_the_worked_sheet_is_typeset_without_a_fault(
 ) -> None:
     run = inside("sheet", str(SHEET), *options, "-o", str(tmp_path / "sheet.tex"))
     assert (run.code, run.err) == (0, "")
-    faults, pages = typeset((tmp_path / "sheet.tex").read_text(encoding="utf-8"), tmp_path, require_tool("pdflatex"), 2)
+    faults, pages = typeset((tmp_path / "sheet.tex").read_text("utf-8"), tmp_path, require_tool("pdflatex"), 2)
     assert faults == []
     assert pages >= 6
 
@@ -327,10 +327,10 @@ def test_a_head_is_typeset_without_a_fault_and_pdf_holds_its_picture(folder: Pat
     (folder / "logo.png").write_bytes(LOGO)
     more = 'logo = "logo.png"\nname = true\nanswers = "lines"\n'
     head = "".join(f"{key} = {json.dumps(HOSTILE)}\n" for key in ("title", "course", "instructor", "due", "text"))
-    (folder / "sheet.toml").write_text(head + more + PROBLEMS, encoding="utf-8")
+    (folder / "sheet.toml").write_text(head + more + PROBLEMS, "utf-8")
     run = inside("sheet", "sheet.toml", "--questions", "-o", "sheet.tex", folder=folder)
     assert run.code == 0
-    faults, pages = typeset((folder / "sheet.tex").read_text(encoding="utf-8"), folder, pdflatex, 2)
+    faults, pages = typeset((folder / "sheet.tex").read_text("utf-8"), folder, pdflatex, 2)
     assert (faults, pages) == ([], 3)
     assert inside("sheet", "sheet.toml", "--questions", "-o", "sheet.pdf", folder=folder).code == 0
     assert b"/Subtype /Image" in (folder / "sheet.pdf").read_bytes()

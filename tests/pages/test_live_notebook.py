@@ -104,7 +104,7 @@ def test_the_state_is_that_of_a_link(widget: Callable[..., Any]) -> None:
     plant = symobs.StateSpace("[0 1; -omega^2 0]", None, "[1 0]", symbols={"omega": "positive"})
     live = widget(plant=plant, task="observer", poles="-1, -2")
     assert live.state == "v=1&task=observer&A=[0%201;%20-omega^2%200]&C=[1%200]&poles=-1,%20-2&symbols=omega:positive"
-    assert widget(SERVO).state == widget(str(SERVO)).state == widget(SERVO.read_text(encoding="utf-8")).state
+    assert widget(SERVO).state == widget(str(SERVO)).state == widget(SERVO.read_text("utf-8")).state
     assert widget(servo("-1, -2")).state == link_of(servo("-1, -2"))
 
 

@@ -70,7 +70,7 @@ def _written(folder: Path) -> None:
     wants = ("view", "answer", "page", "start")
     told = {want: answer({"schema": "symobs-live/1", "want": want, "problem": PROBLEM}) for want in wants}
     worker = f"const ANSWERS = {json.dumps(told)};{WORKER}"
-    (folder / "out" / "worker.js").write_text(worker, encoding="utf-8")
+    (folder / "out" / "worker.js").write_text(worker, "utf-8")
 
 
 @pytest.fixture(name="page")

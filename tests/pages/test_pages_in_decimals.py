@@ -40,6 +40,7 @@ from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.problem import validate
 from symobs.proof.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Section, Sentence
 from symobs.proof.derivation.decimals_check import check_decimals
+from tests.kit import text_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -433,7 +434,7 @@ def digits_of(data: dict[str, Any]) -> int | None:
 
 def test_parametric_values_have_decimal_coefficients() -> None:
     plant = StateSpace("[0 1; -1.37*k -0.35]", "[0; 1.7]", "[1 0.3*k]", symbols={"k": "positive"})
-    page = " ".join(str(observer(plant, poles="-4.5, -6").to("text")).split())
+    page = text_of(observer(plant, poles="-4.5, -6"))
     assert "det 𝒪 = 0.1233 k³ - 0.105 k + 1 ≠ 0" in page
     assert "(3.3333 k² - 65.693 k + 82.320)/(k³ - 0.85158 k + 8.1103)" in page
 
@@ -443,7 +444,7 @@ def test_functions_of_time_are_compared_by_what_is_known_of_them() -> None:
     plant = StateSpace("[-a]", C="[0.3]", symbols={"a": "positive", "T": "positive"})
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        page = " ".join(str(gramian(plant, horizon="T").to("text")).split())
+        page = text_of(gramian(plant, horizon="T"))
     assert "0.045 - 0.045 exp(-2T a)" in page.replace("a T", "T a") or "0.09" in page
 
 

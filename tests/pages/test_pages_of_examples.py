@@ -203,7 +203,7 @@ def test_every_example_shows_in_a_browser(require_tool: Callable[[str], str], tm
     with Browser(require_tool("chromium")) as browser:
         for name in [path.stem for path in sampled(3, FILES)]:
             path = tmp_path / f"{name}.html"
-            path.write_text(str(render(document_of(name), "html")), encoding="utf-8")
+            path.write_text(str(render(document_of(name), "html")), "utf-8")
             browser.media()
             browser.size(WIDE)
             browser.open(path)
@@ -236,7 +236,7 @@ def test_no_formula_is_wider_than_its_page(require_tool: Callable[[str], str], t
         if place % 5 < 2
     ]
     path = tmp_path / "hostile.html"
-    path.write_text(page("Hostile", "\n".join(shown)), encoding="utf-8")
+    path.write_text(page("Hostile", "\n".join(shown)), "utf-8")
     with Browser(require_tool("chromium")) as browser:
         browser.open(path)
         for width, media in ((WIDE, ""), (PAPER, "print")):

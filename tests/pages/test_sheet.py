@@ -42,7 +42,7 @@ def folder_with_problems(tmp_path: Path) -> Path:
         "met": f'title = "Met"\ntask = "observability"\n{plant}[expect]\nrank = 1\n',
     }
     for name, text in files.items():
-        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
+        (tmp_path / f"{name}.toml").write_text(text, "utf-8")
     return tmp_path
 
 
@@ -64,7 +64,7 @@ def test_all_questions_come_first_then_all_solutions(folder: Path) -> None:
 
 @pytest.mark.parametrize("name", ["latex", "beamer", "html", "text", "markdown"])
 def test_a_problem_without_a_title_has_the_name_of_its_file(name: str, folder: Path) -> None:
-    (folder / "untitled.toml").write_text('task = "observability"\n[plant]\nA = "[1]"\nC = "[1]"\n', encoding="utf-8")
+    (folder / "untitled.toml").write_text('task = "observability"\n[plant]\nA = "[1]"\nC = "[1]"\n', "utf-8")
     run = inside("sheet", "untitled.toml", "--format", name, folder=folder)
     assert run.code == 0, run.err
     assert run.out.count("untitled") == 2
@@ -101,7 +101,7 @@ def test_every_part_has_symbols_and_time_of_its_own(folder: Path) -> None:
         "second": '[symbols]\nw = "real"\n[plant]\nA = "[0 w; 1 0]"\ndt = true\n',
     }
     for name, text in texts.items():
-        (folder / f"{name}.toml").write_text(f'task = "characteristic_polynomial"\n{text}', encoding="utf-8")
+        (folder / f"{name}.toml").write_text(f'task = "characteristic_polynomial"\n{text}', "utf-8")
     run = inside("sheet", "first.toml", "second.toml", "--solutions", folder=folder)
     assert run.code == 0, run.err
     first, second = run.out.split(r"\problemhead{2.}")
@@ -116,7 +116,7 @@ def test_every_part_keeps_the_convention_of_its_file(folder: Path) -> None:
     own = {"S1": 'M = "[-1; -3]"', "S4": 'H = "[1; 3]"', "standard": 'L = "[1; 3]"'}
     for name, gain in own.items():
         text = f'task = "observer"\nconvention = "{name}"\n{plant}{gain}\n'
-        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+        (folder / f"{name}.toml").write_text(text, "utf-8")
     files = [f"{name}.toml" for name in own]
     run = inside("sheet", *files, "--questions", "--format", "text", folder=folder)
     assert run.code == 0, run.err
@@ -304,7 +304,7 @@ def test_no_progress_where_nobody_looks(folder: Path) -> None:
 
 def typeset(source: str, folder: Path, pdflatex: str, runs: int = 1) -> tuple[list[str], int]:
     """Return what TeX finds wrong with a document, and its pages."""
-    (folder / "page.tex").write_text(source, encoding="utf-8")
+    (folder / "page.tex").write_text(source, "utf-8")
     for _ in range(runs):
         command = [pdflatex, "-interaction=nonstopmode", "-no-shell-escape", "page.tex"]
         subprocess.run(command, cwd=folder, capture_output=True, check=False)
@@ -324,7 +324,7 @@ def wide(fault: str) -> bool:
 def test_a_sheet_is_typeset_without_a_fault(folder: Path, require_tool: RequireTool) -> None:
     hostile = r"100 % of $x_1^2$ \input{x} & #~ " * 4
     text = f"title = {json.dumps(hostile)}\nsource = {json.dumps(hostile)}\n"
-    (folder / "hostile.toml").write_text(text + (folder / "good.toml").read_text().partition("\n")[2], encoding="utf-8")
+    (folder / "hostile.toml").write_text(text + (folder / "good.toml").read_text().partition("\n")[2], "utf-8")
     gramian = ROOT / "worked_examples" / "third_order_gramian.toml"  # wide: functions of time in a matrix
     files = ["hostile.toml", "bad.toml", "no.toml", str(SERVO), str(REGION), str(gramian), "good.toml"]
     run = inside("sheet", *files, "--title", hostile, folder=folder)
@@ -388,7 +388,7 @@ def test_a_problem_told_in_words_begins_the_first_slide(folder: Path) -> None:
     text = (
         'title = "T"\ntext = "Two states, one seen."\ntask = "observability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
     )
-    (folder / "words.toml").write_text(text, encoding="utf-8")
+    (folder / "words.toml").write_text(text, "utf-8")
     run = inside("solve", "words.toml", "--format", "beamer", folder=folder)
     frames = run.out.split(r"\begin{frame}")[1:]
     assert [frame.partition("{")[2].partition("}")[0] for frame in frames] == ["", "Given", "Observability"]
@@ -398,7 +398,7 @@ def test_a_problem_told_in_words_begins_the_first_slide(folder: Path) -> None:
 def test_a_suffix_never_means_slides(folder: Path) -> None:
     run = inside("sheet", "good.toml", "-o", "out.tex", folder=folder)
     assert run.code == 0
-    assert "{article}" in (folder / "out.tex").read_text(encoding="utf-8")
+    assert "{article}" in (folder / "out.tex").read_text("utf-8")
 
 
 @pytest.mark.parametrize("name", [name for name, kind in formats().items() if hasattr(kind, "sheet") and name != "pdf"])

@@ -17,6 +17,7 @@ from symobs.pages.page.narrator import narrate
 from symobs.pages.printers.text_printer import text_width
 from symobs.proof.derivation import Equal, Section
 from symobs.tasks.result import render
+from tests.kit import SERVO
 from tests.support.examples import document_of
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from symobs.tasks.result import Document
 
 BESIDE = "side_by_side"
-SERVO = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 POLES: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10, -10]}
 
 

@@ -73,7 +73,7 @@ def test_the_link_holds_the_problem() -> None:
     (link,) = re.findall(r'<p class="live"><a href="([^"]*)"', html("--live", f"{LIVE}#old"))
     address, _, state = unescape(link).partition("#")
     given = dict(part.split("=", 1) for part in state.split("&"))
-    problem = tomllib.loads(SERVO.read_text(encoding="utf-8"))
+    problem = tomllib.loads(SERVO.read_text("utf-8"))
     assert address == LIVE
     assert unquote(given["transfer_function"]) == problem["plant"]["transfer_function"]
     assert (given["task"], unquote(given["control"])) == ("compensator", "-2, -2")
@@ -128,9 +128,9 @@ def launched(require_tool: Callable[[str], str]) -> Iterator[Any]:
 @pytest.fixture(name="files", scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder: Path = tmp_path_factory.mktemp("web")
-    (folder / "page.html").write_text(html("--details", "--copy", "--live", LIVE), encoding="utf-8")
+    (folder / "page.html").write_text(html("--details", "--copy", "--live", LIVE), "utf-8")
     sheet = inside("sheet", str(SERVO), str(SERVO), "--format", "html", "--details").out
-    (folder / "sheet.html").write_text(sheet, encoding="utf-8")
+    (folder / "sheet.html").write_text(sheet, "utf-8")
     return folder
 
 
@@ -195,7 +195,7 @@ def test_every_button_copies_what_tex_typesets(
     assert (complaints, asked) == ([], [(files / "page.html").as_uri()])
     context.close()
     lines = [r"\documentclass{article}\usepackage{amsmath,amssymb}\begin{document}", *copied, r"\end{document}"]
-    (tmp_path / "copied.tex").write_text("\n".join(lines), encoding="utf-8")
+    (tmp_path / "copied.tex").write_text("\n".join(lines), "utf-8")
     command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "copied.tex"]
     run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, errors="replace", check=False)
     assert run.returncode == 0, run.stdout[-2000:]

@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 
 from symobs import StateSpace, characteristic_polynomial, decomposition, detectability, gramian, observability
-
-
-def text_of(result: Any) -> str:
-    return " ".join(str(result.to("text")).split())
+from tests.kit import text_of
 
 
 def test_two_vectors_of_a_kernel_are_told_in_one_display() -> None:

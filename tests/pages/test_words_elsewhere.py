@@ -8,11 +8,7 @@ import pytest
 
 import symobs
 from symobs.formula import phrases
-
-
-def text_of(result: Any) -> str:
-    return " ".join(str(result.to("text")).split())
-
+from tests.kit import text_of
 
 # -- stability regions ------------------------------------------------------------------------------------------------
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import pytest
 
 import symobs
+from tests.kit import text_of
 
 
 def page(A: str, B: str, C: str, control: str, observer: str) -> str:
     design = symobs.compensator(symobs.StateSpace(A, B, C), control_poles=control, observer_poles=observer)
-    return " ".join(str(design.to("text")).split())
+    return text_of(design)
 
 
 def test_one_chain_of_eigenvectors() -> None:
@@ -65,6 +66,6 @@ def test_a_denominator_that_is_reduced_is_no_product() -> None:
     # As above, with poles of the feedback that no sentence can tell: s^2 + p s + q.
     plant = symobs.StateSpace("[-1 0; 0 -2]", "[1; 1]", "[1 0]")
     design = symobs.compensator(plant, control_polynomial="s^2 + p*s + q", observer_poles=[-2, -5])
-    text = " ".join(str(design.to("text")).split())
+    text = text_of(design)
     assert "The denominator divides the product of the two desired polynomials" in text
     assert "The denominator is the product" not in text

@@ -38,7 +38,7 @@ pytestmark = pytest.mark.slow
 #: The rows of the catalogue of sources; a line may name two that share a heading.
 ROWS = [
     row.split(" / ")
-    for row in (ROOT / "tests/support/problems/catalogue_ids.txt").read_text(encoding="utf-8").splitlines()
+    for row in (ROOT / "tests/support/problems/catalogue_ids.txt").read_text("utf-8").splitlines()
     if not row.startswith("#")
 ]
 #: No example stands for more rows than this.
@@ -97,7 +97,7 @@ def test_the_command_line_gives_the_same_answers(path: Path, tmp_path: Path) -> 
     ran = CliRunner().invoke(cli, ["solve", str(path), "--format", "json", "-o", str(tmp_path / "answers.json")])
     assert ran.exit_code == 0, ran.output
     assert ran.output == ""
-    answers = (tmp_path / "answers.json").read_text(encoding="utf-8")
+    answers = (tmp_path / "answers.json").read_text("utf-8")
     assert json.loads(answers) == json.loads(render(document_of(path.stem), "json"))
 
 
@@ -291,9 +291,9 @@ def part_with(result: Any, letter: str) -> Any:
 
 def test_a_spoiled_file_exits_with_4(tmp_path: Path) -> None:
     path = next(path for path in FILES if path.stem == "servo_observer")
-    text = path.read_text(encoding="utf-8")
+    text = path.read_text("utf-8")
     wrong = tmp_path / "wrong.toml"
-    wrong.write_text(text.replace('L = "[19; 81]"', 'L = "[19; 82]"'), encoding="utf-8")
+    wrong.write_text(text.replace('L = "[19; 81]"', 'L = "[19; 82]"'), "utf-8")
     ran = CliRunner().invoke(cli, ["solve", str(wrong), "--format", "text"])
     assert ran.exit_code == 4
     assert "expect.L: expected [19; 82], found [19; 81]" in ran.stderr

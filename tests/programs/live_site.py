@@ -63,7 +63,7 @@ def differences(page: Any, names: list[str]) -> list[str]:
     """Return what the site answers otherwise; one line a question."""
     found, asked, by_words = [], 0, 0
     for name in names:
-        data = tomllib.loads((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"), parse_float=str)
+        data = tomllib.loads((EXAMPLES / f"{name}.toml").read_text("utf-8"), parse_float=str)
         kept = {key: data[key] for key in data if key not in {"expect", "printed", "title", "source", "id"}}
         for task in data.get("tasks") or [data["task"]]:
             for question in QUESTIONS:

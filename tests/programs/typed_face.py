@@ -64,7 +64,7 @@ def answered() -> dict[str, list[Result]]:
     """The results of the worked examples, by task."""
     found: dict[str, list[Result]] = {name: [] for name in sorted(tasks())}
     for path in sorted((ROOT / "worked_examples").glob("*.toml")):
-        for result in read(path.read_text(encoding="utf-8"), path.name, path.parent).solve():
+        for result in read(path.read_text("utf-8"), path.name, path.parent).solve():
             found[result.task].append(result)
     return found
 
@@ -160,4 +160,4 @@ def stub() -> str:
 
 
 if __name__ == "__main__":
-    STUB.write_text(stub(), encoding="utf-8")
+    STUB.write_text(stub(), "utf-8")

@@ -18,7 +18,7 @@ NAMES = {path.stem: path for path in EXAMPLES}
 @cache
 def problem_of(name: str) -> Problem:
     path = NAMES[name]
-    return read(path.read_text(encoding="utf-8"), path.name, path.parent)
+    return read(path.read_text("utf-8"), path.name, path.parent)
 
 
 @cache

@@ -144,7 +144,7 @@ def own_convention(tables: Mapping[str, Any], folder: Path | None) -> dict[str, 
     if folder is None or not re.fullmatch("[A-Za-z][A-Za-z0-9_-]{0,39}", stem) or (PROFILES / f"{stem}.toml").is_file():
         return {}
     try:
-        return {"convention_file": (folder / f"{stem}.toml").read_text(encoding="utf-8")}
+        return {"convention_file": (folder / f"{stem}.toml").read_text("utf-8")}
     except (OSError, UnicodeDecodeError):
         return {}
 

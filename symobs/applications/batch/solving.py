@@ -54,7 +54,7 @@ def problem_of(payload: Mapping[str, Any]) -> Problem:
         return validate(payload["problem"])
     with TemporaryDirectory() as folder:
         name = str(payload["problem"]["convention"]).removesuffix(".toml")
-        (Path(folder) / f"{name}.toml").write_text(payload["convention_file"], encoding="utf-8")
+        (Path(folder) / f"{name}.toml").write_text(payload["convention_file"], "utf-8")
         return validate(payload["problem"], folder=Path(folder))
 
 

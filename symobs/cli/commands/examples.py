@@ -37,11 +37,11 @@ def command(name: str | None, folder: str | None) -> None:
     if folder is not None:
         copied([known[chosen]] if chosen else list(known.values()), folder)
     elif chosen is not None:
-        write(known[chosen].read_text(encoding="utf-8"))
+        write(known[chosen].read_text("utf-8"))
     else:
         width = max(map(len, known), default=0)
         write("".join(f"{found.ljust(width)}  {_title(path)}\n" for found, path in known.items()))
 
 
 def _title(path: Path) -> str:
-    return str(tomllib.loads(path.read_text(encoding="utf-8")).get("title", ""))
+    return str(tomllib.loads(path.read_text("utf-8")).get("title", ""))

@@ -63,7 +63,7 @@ def command(timeout: float, memory: int) -> None:
     async def check(problem: str, answer: str) -> dict[str, Any]:
         with TemporaryDirectory() as folder:
             path = Path(folder) / "answer.toml"
-            path.write_text(answer, encoding="utf-8")
+            path.write_text(answer, "utf-8")
             done = await _run(("check", "-", str(path), "--format", "json", *limits), problem, timeout)
         return _with_json(done)
 

@@ -39,6 +39,6 @@ def format_suffixes(package: str) -> dict[str, str]:
 def _sources(package: str, mark: str) -> Iterator[str]:
     """Yield the sources of a package that contain a mark."""
     for path in _HERE.joinpath(*package.split(".")[1:]).rglob("*.py"):
-        source = path.read_text(encoding="utf-8")
+        source = path.read_text("utf-8")
         if mark in source:
             yield source

@@ -451,4 +451,4 @@ def file_of(name: str) -> str:
     path = Path(name) if name.endswith(".toml") else PROFILES / f"{found}.toml"
     if not path.is_file():
         raise UsageError("no convention of the package has this law", repair="write a file like that of standard")
-    return path.read_text(encoding="utf-8")
+    return path.read_text("utf-8")

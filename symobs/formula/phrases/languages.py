@@ -169,7 +169,7 @@ def _read(folder: Path) -> Language:
 def _table(path: Path) -> dict[str, Any]:
     import tomllib  # noqa: PLC0415 - pages in English do not pay for it
 
-    return tomllib.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    return tomllib.loads(path.read_text("utf-8")) if path.is_file() else {}
 
 
 def faults(folder: Path) -> Iterator[str]:

@@ -67,14 +67,14 @@ _FOLDER = Path(__file__).parent
 
 def style_of(web: WebPage) -> str:
     """Return the style sheet of the interactive parts."""
-    return (_FOLDER / "html_web.css").read_text(encoding="utf-8") if web.details or web.copy or web.live else ""
+    return (_FOLDER / "html_web.css").read_text("utf-8") if web.details or web.copy or web.live else ""
 
 
 def script_of(web: WebPage, language: str) -> tuple[str, str]:
     """Return the script with its words, as elements, and the policy that allows it and no other."""
     if not web.copy:
         return "", ""
-    text = (_FOLDER / "html_copy.js").read_text(encoding="utf-8")
+    text = (_FOLDER / "html_copy.js").read_text("utf-8")
     mark = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
     phrases = language_named(language).phrases
     words = " ".join(f'data-{word}="{escape(phrases[f"web_{word}"])}"' for word in ("copy", "copied", "refused"))
@@ -265,7 +265,7 @@ def page(title: str, body: str, web: WebPage = PLAIN, *, language: str = "en", h
 
     Pictures are allowed as data alone, where there is one.
     """
-    skeleton = Template((_FOLDER / "html_page.html").read_text(encoding="utf-8"))
+    skeleton = Template((_FOLDER / "html_page.html").read_text("utf-8"))
     script, policy = script_of(web, language)
     policy += "; img-src data:" if has_picture else ""
     whole = {"style": style() + style_of(web), "body": body, "script": script, "policy": policy, "language": language}
@@ -274,7 +274,7 @@ def page(title: str, body: str, web: WebPage = PLAIN, *, language: str = "en", h
 
 def style() -> str:
     """Return the style of the content of `class="symobs"`."""
-    return (_FOLDER / "html_body.css").read_text(encoding="utf-8")
+    return (_FOLDER / "html_body.css").read_text("utf-8")
 
 
 def plain(text: str) -> str:

@@ -93,7 +93,7 @@ def compiled(
     try:
         with _ending_in_order(), tempfile.TemporaryDirectory(prefix="symobs-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
-            (folder / _SOURCE).write_text(source, encoding="utf-8")
+            (folder / _SOURCE).write_text(source, "utf-8")
             for picture, content in pictures.items():
                 (folder / picture).write_bytes(content)
             page = (folder / _SOURCE).with_suffix(".pdf")

@@ -92,15 +92,15 @@ def plain(text: str, names: Mapping[str, str]) -> str:
 def agrees(path: Path, differences: Sequence[str], scratch: Path, limit: float = 120) -> bool:
     """Tell whether giac or Maxima, after running a file, finds normal form 0 for each of these expressions."""
     program = scratch / path.name
-    text = path.read_text(encoding="utf-8")
+    text = path.read_text("utf-8")
     if path.suffix == ".mac":
         asked = "\n".join(f'print("difference", ratsimp({difference}))$' for difference in differences)
-        program.write_text(f"{text}\n{asked}\n", encoding="utf-8")
+        program.write_text(f"{text}\n{asked}\n", "utf-8")
         done = maxima(program, limit)
         told = re.findall(r"^difference (.*?)\s*$", done.output, re.MULTILINE) if done else []
         return told == ["0"] * len(differences)
     asked = ",".join(f"normal({difference})" for difference in differences)
-    program.write_text(f"{text}\n[{asked}]\n", encoding="utf-8")
+    program.write_text(f"{text}\n[{asked}]\n", "utf-8")
     done = giac(program, limit)
     if done is None:
         return False

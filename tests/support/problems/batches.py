@@ -61,8 +61,8 @@ sys.meta_path.insert(0, Finder())
 
 def hostile_kind(folder: Path) -> str:
     """Write the kind `hostile` into a folder; return the PYTHONPATH with which every process knows it."""
-    (folder / "hostile_kind.py").write_text(_HOSTILE, encoding="utf-8")
-    (folder / "sitecustomize.py").write_text(_SITE, encoding="utf-8")
+    (folder / "hostile_kind.py").write_text(_HOSTILE, "utf-8")
+    (folder / "sitecustomize.py").write_text(_SITE, "utf-8")
     return os.pathsep.join([str(folder), str(ROOT)])
 
 

@@ -52,13 +52,13 @@ def canonical(function: Any) -> dict[str, Any]:
 
 def tasks_of(name: str) -> list[str]:
     """Return the tasks of a worked example, `minimal` among them where an observer of minimal order is asked for."""
-    data = tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((FOLDER / f"{name}.toml").read_text("utf-8"))
     return [*(data.get("tasks") or [data["task"]]), str(data.get("specification", {}).get("observer", ""))]
 
 
 def given(name: str) -> dict[str, Any]:
     """Return the plant of a worked example and what is asked about it, under the names of the problems by hand."""
-    data = tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((FOLDER / f"{name}.toml").read_text("utf-8"))
     plant, asked = data["plant"], data.get("specification", {})
     constants = {key: expression(text) for key, text in data.get("constants", {}).items()}
     found: dict[str, Any] = {"signs": data.get("symbols", {})}

@@ -8,7 +8,7 @@ from typing import Any
 
 from tests.support.regions.region_problem import Problem
 
-_GROUPS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+_GROUPS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 
 
 def _problem(given: dict[str, Any]) -> Problem:

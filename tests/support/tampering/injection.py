@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 #: What the canary says; in the texts, CANARY stands for its path and OWNED for that of the file to be made.
 SECRET = "SECRETCANARYCONTENT"  # noqa: S105 - no password
 
-_DATA = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+_DATA = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 #: The same behind what could open the way for them, and among other words.
 WRAPPERS = _DATA.pop("wrappers")
 _TEX = _DATA["tex"]
@@ -114,10 +114,10 @@ def printable(text: str) -> bool:
 
 def files(texts: Sequence[str], folder: Path) -> list[str]:
     """Write a problem for each text, which is its title, its source and its words; return the names of the files."""
-    folder.joinpath("canary").write_text(SECRET, encoding="utf-8")
+    folder.joinpath("canary").write_text(SECRET, "utf-8")
     names = [f"{number}.toml" for number in range(len(texts))]
     for name, text in zip(names, texts, strict=True):
-        folder.joinpath(name).write_text(problem(text, text, text), encoding="utf-8")
+        folder.joinpath(name).write_text(problem(text, text, text), "utf-8")
     return names
 
 
@@ -168,11 +168,11 @@ def faults_of_web(texts: Sequence[str], folder: Path, browser: Browser) -> Itera
     run = inside("sheet", *names, "--title", texts[0].replace("\0", ""), "-o", "out.html", folder=folder)
     yield from _faults_of_run(run.code, run.err)
     page = folder / "out.html"
-    written = page.read_text(encoding="utf-8")
+    written = page.read_text("utf-8")
     for open_to_all in (False, True):
         if open_to_all:
             assert _POLICY.search(written)
-            page.write_text(_POLICY.sub("", written), encoding="utf-8")
+            page.write_text(_POLICY.sub("", written), "utf-8")
         browser.open(page)
         yield from (f"the browser complains: {complaint[:500]}" for complaint in browser.complaints())
         yield from (f"{request} was asked for" for request in browser.requests() if request != page.as_uri())
@@ -202,7 +202,7 @@ def faults_of_markdown(texts: Sequence[str], folder: Path) -> Iterator[str]:
 
 def faults_of_bare_tex(texts: Iterable[str], folder: Path) -> Iterator[str]:
     """Yield what TeX, as the package calls it, reads, writes or runs where nothing at all is escaped."""
-    folder.joinpath("canary").write_text(SECRET, encoding="utf-8")
+    folder.joinpath("canary").write_text(SECRET, "utf-8")
     before = set(folder.iterdir())
     for text in texts:
         source = rf"\documentclass{{article}}\begin{{document}}x {text} \end{{document}}"

@@ -21,7 +21,7 @@ INTERACTIVE = re.compile(r"^symobs serve$|symobs\.live\(", re.MULTILINE)
 
 def text_of(page: str) -> str:
     """The text of a page, which is named from the folder `docs`."""
-    return (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    return (ROOT / "docs" / f"{page}.md").read_text("utf-8")
 
 
 def blocks(page: str) -> list[tuple[str, str, str]]:
@@ -35,7 +35,7 @@ def follow(page: str, folder: Path) -> None:
     printed: str | None = None
     for file, language, block in blocks(page):
         if file:
-            (folder / file).write_text(block, encoding="utf-8")
+            (folder / file).write_text(block, "utf-8")
         elif INTERACTIVE.search(block):
             printed = None
         elif language == "sh":
@@ -58,7 +58,7 @@ def run(block: str, folder: Path) -> str:
             with (folder / text[2]).open("a" if text[1] == ">>" else "w", encoding="utf-8") as file:
                 file.writelines(f"{each}\n" for each in takewhile(lambda each: each != "END", lines))
         elif line.startswith("cat "):
-            printed += (folder / line[4:]).read_text(encoding="utf-8")
+            printed += (folder / line[4:]).read_text("utf-8")
         elif line:
             command, _, code = re.sub(r"\s+#.*", "", line).partition(" || test $? = ")
             command, _, wanted = command.partition(" | grep ")
@@ -68,7 +68,7 @@ def run(block: str, folder: Path) -> str:
             assert (ran.code, line) == (int(code or 0), line), ran.err
             assert wanted.removeprefix("-i ").lower() in ran.out.lower()
             if target:
-                (folder / target).write_text(ran.out, encoding="utf-8")
+                (folder / target).write_text(ran.out, "utf-8")
             else:
                 printed += ran.out + ran.err
     return printed

@@ -64,7 +64,7 @@ def held(name: str) -> ExerciseSet:
         return found
     with TemporaryDirectory() as folder:
         path = Path(folder) / "problem.toml"
-        path.write_text(BY_HAND[name], encoding="utf-8")
+        path.write_text(BY_HAND[name], "utf-8")
         (found,) = exercises([str(path)])
         return found
 

@@ -45,7 +45,7 @@ def ask(questions: Sequence[str], limit: float = 600, beginning: str = "") -> li
     ]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "questions.m"
-        program.write_text("\n".join([_BEGINNING, beginning, *parts, 'printf("# end\\n");\n']), encoding="utf-8")
+        program.write_text("\n".join([_BEGINNING, beginning, *parts, 'printf("# end\\n");\n']), "utf-8")
         command = [COMMAND, "--norc", "--no-history", "--quiet", str(program)]
         done = other_systems.run(command, limit, folder=Path(folder))
     if done is None:

@@ -110,16 +110,16 @@ def test_the_suffix_names_the_format(tmp_path: Path) -> None:
         target = tmp_path / f"page{suffix}"
         run = inside("solve", str(SERVO), "-o", str(target))
         assert run == (0, "", "")
-        assert target.read_text(encoding="utf-8").startswith(beginning)
+        assert target.read_text("utf-8").startswith(beginning)
     given = tmp_path / "given.tex"
     assert inside("solve", str(SERVO), "--format", "json", "-o", str(given)).code == 0
-    assert results(given.read_text(encoding="utf-8"))
-    assert inside("solve", str(SERVO), "--format", "json", "-o", "-").out == given.read_text(encoding="utf-8")
+    assert results(given.read_text("utf-8"))
+    assert inside("solve", str(SERVO), "--format", "json", "-o", "-").out == given.read_text("utf-8")
 
 
 def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     target = tmp_path / "page.tex"
-    target.write_text("before", encoding="utf-8")
+    target.write_text("before", "utf-8")
     target.chmod(0o600)
 
     def fail(*_: object) -> None:
@@ -131,14 +131,14 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
     assert (run.code, run.out) == (3, "")
     assert "No space left on device; make room there, or name a file elsewhere with -o" in run.err
     assert [path.name for path in tmp_path.iterdir()] == ["page.tex"]
-    assert target.read_text(encoding="utf-8") == "before"
+    assert target.read_text("utf-8") == "before"
 
     for text in (NOT_OBSERVABLE.replace("-10]", "x]"), "", "a: b"):
         assert inside("solve", "-", "-o", str(target), stdin=text.encode()).code == 3
-    assert target.read_text(encoding="utf-8") == "before"
+    assert target.read_text("utf-8") == "before"
 
     assert inside("solve", "-", "-o", str(target), stdin=NOT_OBSERVABLE.encode()).code == 4
-    assert target.read_text(encoding="utf-8").startswith("\\documentclass")
+    assert target.read_text("utf-8").startswith("\\documentclass")
     assert target.stat().st_mode & 0o777 == 0o600
 
 
@@ -262,7 +262,7 @@ def test_the_schema_is_one_and_fits_the_worked_examples() -> None:
     Draft202012Validator.check_schema(schema)
     validator = Draft202012Validator(schema)
     for path in EXAMPLES:
-        assert list(validator.iter_errors(tomllib.loads(path.read_text(encoding="utf-8")))) == []
+        assert list(validator.iter_errors(tomllib.loads(path.read_text("utf-8")))) == []
     tables = tomllib.loads(OBSERVER)
     changes: tuple[dict[str, Any], ...] = (
         {"titel": "x"},
@@ -291,11 +291,11 @@ def test_templates_are_listed_and_copied_once(tmp_path: Path) -> None:
     assert inside("templates", "copy", str(mine)) == (0, "", "")
     for name in names:
         assert (mine / name).read_bytes() == (ROOT / "latex_templates" / name).read_bytes()
-    (mine / "article.tex").write_text("my own", encoding="utf-8")
+    (mine / "article.tex").write_text("my own", "utf-8")
     again = inside("templates", "copy", str(mine))
     assert again.code == 3
     assert "article.tex is already there" in again.err
-    assert (mine / "article.tex").read_text(encoding="utf-8") == "my own"
+    assert (mine / "article.tex").read_text("utf-8") == "my own"
     assert inside("templates", "copy", str(mine / "article.tex")).code == 3
 
 
@@ -305,7 +305,7 @@ def test_what_is_beyond_the_limits_of_a_check_is_undecided_with_its_reason(tmp_p
     rows = ("[" + ", ".join(f'"-{rate}"' if i == j else "0" for j in range(7)) + "]" for i, rate in enumerate(rates))
     plant = f'[symbols]\nT = "positive"\n[plant]\nA = [{", ".join(rows)}]\nC = "[1 1 1 1 1 1 1]"\n'
     text = f'tasks = ["gramian", "observability"]\n{plant}[specification]\nhorizon = "T"\n'
-    (tmp_path / "rates.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "rates.toml").write_text(text, "utf-8")
     run = inside("solve", "rates.toml", "--format", "json", folder=tmp_path)
     results = json.loads(run.out)["results"]
     assert (run.code, [result["verdict"] for result in results]) == (5, ["undecided", "yes"])

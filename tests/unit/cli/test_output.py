@@ -50,7 +50,7 @@ def symobs_that_permissions_bind(require_tool: RequireTool) -> list[str]:
 
 
 def contents(folder: Path) -> dict[str, str]:
-    return {path.name: path.read_text(encoding="utf-8") for path in folder.iterdir() if path.is_file()}
+    return {path.name: path.read_text("utf-8") for path in folder.iterdir() if path.is_file()}
 
 
 # -- places that take nothing -----------------------------------------------------------------------------------------
@@ -70,7 +70,7 @@ def contents(folder: Path) -> dict[str, str]:
 @pytest.mark.parametrize("command", [["solve"], ["sheet"], ["audit"]], ids=lambda command: command[0])
 def test_a_place_that_takes_nothing_is_said_at_once(command: list[str], target: str, said: str, tmp_path: Path) -> None:
     (tmp_path / "folder").mkdir()
-    (tmp_path / "page.tex").write_text("before", encoding="utf-8")
+    (tmp_path / "page.tex").write_text("before", "utf-8")
     form = [] if command == ["audit"] else ["--format", "latex"]
     left = inside(*command, "nothing.toml", "-o", target, *form, folder=tmp_path)  # nothing is read, let alone computed
     assert (left.code, left.out) == (3, "")
@@ -97,7 +97,7 @@ def test_a_folder_that_cannot_be_written(bound: list[str], tmp_path: Path) -> No
 
 
 def test_a_file_that_may_not_become_so_large(tmp_path: Path) -> None:
-    (tmp_path / "page.tex").write_text("before", encoding="utf-8")
+    (tmp_path / "page.tex").write_text("before", "utf-8")
     left = run(sys.executable, "-B", "-c", SMALL_FILES, "solve", str(SERVO), "-o", "page.tex", folder=tmp_path)
     assert (left.code, left.out) == (3, "")
     assert left.err == (
@@ -125,8 +125,8 @@ def a_disk_of_sixteen_kilobytes(tmp_path: Path) -> Iterator[Path | None]:
 def test_a_disk_that_is_full(small_disk: Path | None, budget: list[str], tmp_path: Path) -> None:
     if small_disk is None:
         return  # the limit on the size of files and /dev/full remain
-    (small_disk / "page.html").write_text("before", encoding="utf-8")
-    (small_disk / "full").write_text("x" * 12288, encoding="utf-8")
+    (small_disk / "page.html").write_text("before", "utf-8")
+    (small_disk / "full").write_text("x" * 12288, "utf-8")
     left = inside("solve", str(SERVO), "-o", "disk/page.html", *budget, folder=tmp_path)
     assert (left.code, left.out) == (3, "")
     assert left.err == ("disk/page.html: No space left on device; make room there, or name a file elsewhere with -o\n")
@@ -147,8 +147,8 @@ def test_a_disk_that_is_full(small_disk: Path | None, budget: list[str], tmp_pat
 
 def test_of_several_files_all_are_written_or_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     old, new, last = tmp_path / "old", tmp_path / "new", tmp_path / "last"
-    old.write_text("before", encoding="utf-8")
-    last.write_text("before too", encoding="utf-8")
+    old.write_text("before", "utf-8")
+    last.write_text("before too", "utf-8")
     outputs = [("first", str(old)), ("second", str(new)), ("third", str(last))]
     replace = Path.replace
 

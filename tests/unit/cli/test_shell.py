@@ -16,7 +16,7 @@ from symobs.cli.shared import common
 from symobs.ground.errors import InputError, UsageError
 from symobs.system.specification import CHOICES
 from symobs.tasks.result import tasks
-from tests.kit import tabled
+from tests.kit import SERVO, tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import environment, inside
 
@@ -32,11 +32,11 @@ EXAMPLES = sorted(path.stem for path in (ROOT / "worked_examples").glob("*.toml"
 
 def test_examples_are_listed_printed_and_copied(tmp_path: Path) -> None:
     assert [line.split()[0] for line in inside("examples").out.splitlines()] == EXAMPLES
-    source = (ROOT / "worked_examples" / "servo_observer.toml").read_text(encoding="utf-8")
+    source = (ROOT / "worked_examples" / "servo_observer.toml").read_text("utf-8")
     assert inside("examples", "servo_observer").out == inside("examples", "servo_observer.toml").out == source
     folder = tmp_path / "mine"
     assert inside("examples", "servo_observer", "--copy", str(folder)).code == 0
-    assert [path.read_text(encoding="utf-8") for path in folder.iterdir()] == [source]
+    assert [path.read_text("utf-8") for path in folder.iterdir()] == [source]
     again = inside("examples", "--copy", str(folder))
     assert (again.code, len(list(folder.iterdir()))) == (3, 1)
     assert "servo_observer.toml is already there" in again.err
@@ -50,7 +50,7 @@ def test_examples_are_listed_printed_and_copied(tmp_path: Path) -> None:
 @tabled
 def test_choices_are_those_that_the_task_takes(task: str, name: str) -> None:
     """No word of the table is refused as a word, and one outside of it is."""
-    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    plant = SERVO
     for word in CHOICES[name]:
         assert f"{word!r} is no" not in reason_of(task, plant, name, word)
     assert "'other' is no" in reason_of(task, plant, name, "other")

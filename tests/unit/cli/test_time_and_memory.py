@@ -56,7 +56,7 @@ LONG = 1000.0  # seconds; never waited for
 def hard_problem(tmp_path: Path) -> Path:
     """A problem that does not come to an end."""
     path = tmp_path / "hard.toml"
-    path.write_text(GENERIC, encoding="utf-8")
+    path.write_text(GENERIC, "utf-8")
     return path
 
 
@@ -130,7 +130,7 @@ def test_memory_that_is_refused_is_told_as_such() -> None:
         with_findings("it")
         return len(bytearray(1 << 30))
 
-    (data,) = re.findall(r"VmData:\s+(\d+) kB", Path("/proc/self/status").read_text(encoding="utf-8"))
+    (data,) = re.findall(r"VmData:\s+(\d+) kB", Path("/proc/self/status").read_text("utf-8"))
     most = 300 + int(data) // 1024  # the child begins with the data of this process
     with pytest.raises(OutOfBudget, match=f"{most} MB of memory were not enough, at work on it"):
         within(Budget(None, most), work)
@@ -166,13 +166,13 @@ def test_an_error_of_ours_stays_one() -> None:
     ids=["generic in time", "generic in memory", "numbers in time"],
 )
 def test_hostile_problems_end_undecided(text: str, option: str, amount: str, said: str, tmp_path: Path) -> None:
-    (tmp_path / "hard.toml").write_text(text, encoding="utf-8")
-    (tmp_path / "page.tex").write_text("before", encoding="utf-8")
+    (tmp_path / "hard.toml").write_text(text, "utf-8")
+    (tmp_path / "page.tex").write_text("before", "utf-8")
     run = unbounded("solve", "hard.toml", "-o", "page.tex", option, amount, folder=tmp_path)
     assert run[0] == 5
     assert re.match(f"hard.toml: undecided: {said}(, at work on observer)?; give more with {option}, ", run[1])
     assert run[1].count("\n") == 1
-    assert (tmp_path / "page.tex").read_text(encoding="utf-8") == "before"
+    assert (tmp_path / "page.tex").read_text("utf-8") == "before"
     assert {path.name for path in tmp_path.iterdir()} == {"hard.toml", "page.tex"}
 
 
@@ -278,7 +278,7 @@ def signalled(
 def test_ctrl_c_while_computing(budget: list[str], tmp_path: Path) -> None:
     pipe, target = tmp_path / "problem.toml", tmp_path / "page.tex"
     os.mkfifo(pipe)
-    target.write_text("before", encoding="utf-8")
+    target.write_text("before", "utf-8")
     given: list[Any] = []
 
     def ready() -> bool:
@@ -296,7 +296,7 @@ def test_ctrl_c_while_computing(budget: list[str], tmp_path: Path) -> None:
 
     left = signalled(signal.SIGINT, ready, "solve", str(pipe), "-o", str(target), *budget, folder=tmp_path)
     assert left == (130, "", "interrupted\n")
-    assert target.read_text(encoding="utf-8") == "before"
+    assert target.read_text("utf-8") == "before"
     assert {path.name for path in tmp_path.iterdir()} == {"problem.toml", "page.tex"}
 
 
@@ -304,12 +304,12 @@ def test_ctrl_c_while_computing(budget: list[str], tmp_path: Path) -> None:
 def test_ctrl_c_while_writing(budget: list[str], tmp_path: Path) -> None:
     """The page is complete and waits for the picture, whose place is a pipe that nobody reads."""
     region, target, picture = ROOT / "worked_examples" / "region_nonconvex.toml", "page.tex", tmp_path / "picture.svg"
-    (tmp_path / target).write_text("before", encoding="utf-8")
+    (tmp_path / target).write_text("before", "utf-8")
     os.mkfifo(picture)
     arguments = ["solve", str(region), "-o", target, "--plot", str(picture), *budget]
     left = signalled(signal.SIGINT, lambda: any(tmp_path.glob(".symobs-*")), *arguments, folder=tmp_path)
     assert left == (130, "", "interrupted\n")
-    assert (tmp_path / target).read_text(encoding="utf-8") == "before"
+    assert (tmp_path / target).read_text("utf-8") == "before"
     assert {path.name for path in tmp_path.iterdir()} == {target, "picture.svg"}
 
 
@@ -319,27 +319,27 @@ def test_ctrl_c_while_writing(budget: list[str], tmp_path: Path) -> None:
 )
 def test_an_end_while_tex_runs_ends_tex(number: int, code: int, said: str, budget: list[str], tmp_path: Path) -> None:
     started = hanging_tex(tmp_path)
-    (tmp_path / "page.pdf").write_text("before", encoding="utf-8")
+    (tmp_path / "page.pdf").write_text("before", "utf-8")
     temporary = tmp_path / "temporary"
     temporary.mkdir()
     more = {"PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}", "TMPDIR": str(temporary)}
     arguments = ["solve", str(SERVO), "-o", "page.pdf", *budget]
     left = signalled(number, started.exists, *arguments, folder=tmp_path, **more)
     assert left == (code, "", said)
-    assert ends(int(started.read_text(encoding="utf-8")))
-    assert (tmp_path / "page.pdf").read_text(encoding="utf-8") == "before"
+    assert ends(int(started.read_text("utf-8")))
+    assert (tmp_path / "page.pdf").read_text("utf-8") == "before"
     assert not any(temporary.iterdir())
 
 
 def child_of(parent: int) -> int:
     """Number of the only child of a process."""
-    (number,) = Path(f"/proc/{parent}/task/{parent}/children").read_text(encoding="utf-8").split()
+    (number,) = Path(f"/proc/{parent}/task/{parent}/children").read_text("utf-8").split()
     return int(number)
 
 
 def test_the_alarm_in_tex_is_tex_s(tmp_path: Path) -> None:
     started = hanging_tex(tmp_path)
-    (tmp_path / "page.pdf").write_text("before", encoding="utf-8")
+    (tmp_path / "page.pdf").write_text("before", "utf-8")
     path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
     arguments = ["solve", str(SERVO), "-o", "page.pdf", "--timeout", "900"]
     left = signalled(signal.SIGALRM, started.exists, *arguments, folder=tmp_path, PATH=path)
@@ -348,8 +348,8 @@ def test_the_alarm_in_tex_is_tex_s(tmp_path: Path) -> None:
         "",
         "TeX was stopped: 900 seconds were over; give more with --timeout, or write LaTeX with --format latex\n",
     )
-    assert ends(int(started.read_text(encoding="utf-8")))
-    assert (tmp_path / "page.pdf").read_text(encoding="utf-8") == "before"
+    assert ends(int(started.read_text("utf-8")))
+    assert (tmp_path / "page.pdf").read_text("utf-8") == "before"
 
 
 def test_a_computation_does_not_outlive_its_command(tmp_path: Path) -> None:
@@ -376,4 +376,4 @@ within(Budget({LONG}), deaf)
             assert process.wait(SAFETY) == 143
         finally:
             process.kill()
-    assert ends(int(number.read_text(encoding="utf-8")))
+    assert ends(int(number.read_text("utf-8")))

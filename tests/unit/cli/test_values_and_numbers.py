@@ -31,7 +31,7 @@ observer_poles = "-10, -10"
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    (tmp_path / "servo.toml").write_text(FILE, encoding="utf-8")
+    (tmp_path / "servo.toml").write_text(FILE, "utf-8")
     return tmp_path
 
 

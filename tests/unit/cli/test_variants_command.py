@@ -32,7 +32,7 @@ a = { set = [1, 2] }
 
 @tabled
 def test_what_it_refuses(tmp_path: Path, arguments: list[str], code: int, message: str) -> None:
-    (tmp_path / "strangers.csv").write_text("name,mark\n", encoding="utf-8")
+    (tmp_path / "strangers.csv").write_text("name,mark\n", "utf-8")
     run = inside("variants", str(OBSERVER), *arguments, folder=tmp_path)
     assert run.code == code
     assert message in run.err
@@ -59,7 +59,7 @@ def test_nobody_of_a_table_is_left_without_a_variant(table: str, message: str) -
 
 @pytest.mark.slow
 def test_too_few_leave_nothing_behind_and_partial_ones_what_there_is(tmp_path: Path) -> None:
-    (tmp_path / "few.toml").write_text(FEW, encoding="utf-8")
+    (tmp_path / "few.toml").write_text(FEW, "utf-8")
     call = ("variants", "few.toml", "--count", "5", "--workers", "1", "-o", "set")
     run = inside(*call, folder=tmp_path)
     assert run.code == 4
@@ -69,7 +69,7 @@ def test_too_few_leave_nothing_behind_and_partial_ones_what_there_is(tmp_path: P
     assert inside(*call, "--partial", folder=tmp_path).code == 4
     files = sorted(path.name for path in (tmp_path / "set").rglob("*.*"))
     assert files == ["manifest.json", "sheet.toml", "v001.toml", "v002.toml"]
-    texts = [path.read_text(encoding="utf-8") for path in sorted((tmp_path / "set" / "variants").iterdir())]
+    texts = [path.read_text("utf-8") for path in sorted((tmp_path / "set" / "variants").iterdir())]
     assert {text.splitlines()[0] for text in texts} in (
         {'title = "A is 1, variant 1"', 'title = "A is 2, variant 2"'},
         {'title = "A is 2, variant 1"', 'title = "A is 1, variant 2"'},
@@ -77,7 +77,7 @@ def test_too_few_leave_nothing_behind_and_partial_ones_what_there_is(tmp_path: P
     (tmp_path / "set" / "manifest.json").unlink()
     (tmp_path / "set" / "manifest.json").mkdir()
     for path in (tmp_path / "set" / "variants").iterdir():
-        path.write_text("before", encoding="utf-8")
+        path.write_text("before", "utf-8")
     assert inside(*call, "--partial", folder=tmp_path).code == 3
     assert sorted(path.name for path in (tmp_path / "set").rglob("*.*")) == files
 

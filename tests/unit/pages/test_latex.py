@@ -16,6 +16,7 @@ from symobs.pages.formats.templates import fill
 from symobs.pages.formats.text import WIDTH, Text
 from symobs.pages.printers.latex_printer import LETTERS, LatexPrinter, escape
 from symobs.proof.derivation import Define, Derivation, Diagram, Equal, Note
+from tests.kit import SERVO
 from tests.support.examples import document_of
 from tests.support.problems.steps import HandWritten, document, said, with_a_case
 
@@ -37,7 +38,7 @@ def faults_in_log(require_tool: Callable[[str], str], tmp_path: Path) -> Callabl
     pdflatex = require_tool("pdflatex")
 
     def run(source: str) -> list[str]:
-        (tmp_path / "page.tex").write_text(source, encoding="utf-8")
+        (tmp_path / "page.tex").write_text(source, "utf-8")
         command = [pdflatex, "-interaction=nonstopmode", "-no-shell-escape", "page.tex"]
         subprocess.run(command, cwd=tmp_path, capture_output=True, check=False)
         log = (tmp_path / "page.log").read_text(encoding="latin-1")
@@ -117,7 +118,7 @@ def test_the_page_to_aim_at_is_typeset_without_a_fault(faults: Callable[[str], l
 
 def test_a_page_in_another_language_is_typeset_without_a_fault(faults: Callable[[str], list[str]]) -> None:
     """With the hyphenation of the language or, where TeX has none, without any: never with the English one, its first."""
-    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    plant = SERVO
     source = symobs.compensator(plant, control_poles=[-2, -2], observer_poles=[-10, -10]).to_latex(language="de")
     assert "ngerman" in source
     english = r"\ifnum\language=0 \ifnum\hyphenpenalty<10000 \errmessage{hyphenated as English}\fi\fi"
@@ -145,7 +146,7 @@ def test_a_user_replaces_one_block(tmp_path: Path, faults: Callable[[str], list[
 \textit{\VAR{title}: the end}
 \BLOCK{endblock}
 """
-    (tmp_path / "sheet.tex").write_text(own, encoding="utf-8")
+    (tmp_path / "sheet.tex").write_text(own, "utf-8")
     latex = typeset(document(with_a_case(), title="100 %"), "sheet.tex", folder=tmp_path)
     assert r"\textit{100 \%: the end}" in latex
     assert latex.count("fancyhdr") == 1

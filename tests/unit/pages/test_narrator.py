@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from symobs import StateSpace, observer
+from symobs import observer
 from symobs.exact import Matrix, Scalar
 from symobs.formula.phrases import CONTINUES, PHRASES, WORDS
 from symobs.formula.tree import Environment, Letter, Negative, Product, Sum, Transpose
@@ -17,7 +17,7 @@ from symobs.pages.page.narrator import narrate
 from symobs.pages.page.prose import filled, with_reference
 from symobs.problem.validation import validate
 from symobs.proof.derivation import Derivation, Equal, Given, Note, Sentence, Step
-from tests.kit import tabled
+from tests.kit import SERVO, tabled
 from tests.support.problems.steps import OWN_PHRASES, document, said, with_a_case
 
 A, C = Letter("A"), Letter("C")
@@ -77,7 +77,7 @@ def test_a_sentence_has_the_number_of_its_source(inlines: tuple[object, ...], sh
 
 
 def test_numbers_in_the_text_are_those_of_the_sources() -> None:
-    page = str(observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10, -10]).to("text"))
+    page = str(observer(SERVO, poles=[-10, -10]).to("text"))
     words, _, sources = page.partition("References\n")
     cited = re.findall(r"\[(\d)(?:[;,] [^\]]*)?\]", words.partition("Observer\n")[2])
     listed = re.findall(r"^\[(\d)\]", sources, re.MULTILINE)
@@ -88,7 +88,7 @@ def test_numbers_in_the_text_are_those_of_the_sources() -> None:
 
 
 def test_literature_is_told_as_asked_for() -> None:
-    design = observer(StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=[-10, -10])
+    design = observer(SERVO, poles=[-10, -10])
     full, none = (str(design.to("text", references=how)) for how in ("full", "none"))
     assert "[1] R. E. Kalman, Mathematical description of linear dynamical systems" in " ".join(full.split())
     assert "References" not in none

@@ -119,7 +119,7 @@ def test_without_latexmk_pdflatex_runs_twice(
     which = {"pdflatex": str(tmp_path / "pdflatex")}
     monkeypatch.setattr(shutil, "which", which.get)
     assert compiled(article("x")).startswith(b"%PDF-")
-    assert calls.read_text(encoding="utf-8").split() == ["once", "once"]
+    assert calls.read_text("utf-8").split() == ["once", "once"]
 
 
 def test_time_limit_ends_tex_and_all_it_started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -129,7 +129,7 @@ def test_time_limit_ends_tex_and_all_it_started(monkeypatch: pytest.MonkeyPatch,
     monkeypatch.setattr(shutil, "which", which.get)
     with pytest.raises(TypesettingError, match=r"stopped after 0\.5 seconds"):
         compiled(article("x"), time_limit=0.5)
-    assert ends(int(number.read_text(encoding="utf-8")))
+    assert ends(int(number.read_text("utf-8")))
 
 
 @pytest.mark.parametrize(("number", "raised"), [(signal.SIGTERM, SystemExit), (signal.SIGINT, KeyboardInterrupt)])
@@ -169,12 +169,12 @@ def test_tex_that_floods_its_log_is_stopped(monkeypatch: pytest.MonkeyPatch, tmp
     with pytest.raises(TypesettingError) as caught:
         compiled(article("x"))
     assert str(caught.value) == "TeX was stopped after it had written 20 MB; write LaTeX with --format latex to see why"
-    assert ends(int(number.read_text(encoding="utf-8")))
+    assert ends(int(number.read_text("utf-8")))
     assert {path.name for path in tmp_path.iterdir()} == {"number", "pdflatex"}
 
 
 def program(path: Path, script: str) -> None:
-    path.write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
+    path.write_text(f"#!/bin/sh\n{script}\n", "utf-8")
     path.chmod(path.stat().st_mode | stat.S_IXUSR)
 
 
@@ -185,7 +185,7 @@ def ends(process: int) -> bool:
         try:
             os.kill(process, 0)
             state = Path(f"/proc/{process}/stat")
-            if state.exists() and state.read_text(encoding="utf-8").rpartition(")")[2].split()[0] == "Z":
+            if state.exists() and state.read_text("utf-8").rpartition(")")[2].split()[0] == "Z":
                 return True
         except (ProcessLookupError, FileNotFoundError):
             return True

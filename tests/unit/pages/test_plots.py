@@ -99,7 +99,7 @@ def test_all_pictures_are_typeset_without_a_fault(require_tool: Callable[[str], 
     head, rest = article.split(r"\begin{document}")
     alone = "\n\n".join(tikz_file(ALL[name][0](), printers(name)[0]) for name in ALL)
     whole = head + r"\begin{document}" + alone + "\n".join(bodies) + rest
-    (tmp_path / "page.tex").write_text(whole, encoding="utf-8")
+    (tmp_path / "page.tex").write_text(whole, "utf-8")
     command = [require_tool("pdflatex"), "-interaction=nonstopmode", "-no-shell-escape", "page.tex"]
     subprocess.run(command, cwd=tmp_path, capture_output=True, check=False)
     log = (tmp_path / "page.log").read_text(encoding="latin-1")

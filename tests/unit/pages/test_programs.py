@@ -14,9 +14,9 @@ from symobs.exact.floating import margin_search
 from symobs.exact.floating.sampled import Sampled
 from symobs.ground.errors import CertificateRejected, InexactInput, InputError, SymobsError, UsageError
 from symobs.tasks.result import formats
+from tests.kit import SERVO
 
 LANGUAGES = ("c", "matlab", "modelica", "python")
-SERVO = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 DESIGN = symobs.compensator(SERVO, control_poles="-2, -2", observer_poles="-10, -10")
 
 

@@ -22,7 +22,7 @@ BUILT_IN = sorted(path.name for path in template_folder().glob("*.tex"))
 
 
 def own(folder: Path, name: str, text: str) -> Path:
-    (folder / name).write_text(text, encoding="utf-8")
+    (folder / name).write_text(text, "utf-8")
     return folder
 
 

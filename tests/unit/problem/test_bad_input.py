@@ -43,7 +43,7 @@ def problem(
 
 def solved(folder: Path, text: str, run: Callable[..., Run] = inside) -> Run:
     file = folder / "problem.toml"
-    file.write_text(text, encoding="utf-8")
+    file.write_text(text, "utf-8")
     found = run("solve", file.name, "--format", "json", folder=folder)
     assert [path.name for path in folder.iterdir()] == [file.name], "something was executed"
     return found

@@ -41,7 +41,7 @@ def test_no_escape_sequence_of_a_file_reaches_the_terminal(tmp_path: Path) -> No
     )
     for number, text in enumerate(texts):
         file = tmp_path / f"{number}.toml"
-        file.write_text(text, encoding="utf-8")
+        file.write_text(text, "utf-8")
         found = inside("solve", file.name, folder=tmp_path)
         assert "\x1b" not in found.err
         assert found.code in {3, 4}

@@ -53,8 +53,8 @@ def errors_of(action: Callable[[], object]) -> tuple[SymobsError, ...]:
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_json_with_the_same_keys_is_the_same_problem(path: Any) -> None:
-    tables = tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
-    from_toml, from_json = read(path.read_text(encoding="utf-8")), read("\n " + json.dumps(tables))
+    tables = tomllib.loads(path.read_text("utf-8"), parse_float=str)
+    from_toml, from_json = read(path.read_text("utf-8")), read("\n " + json.dumps(tables))
     assert from_json.title == from_toml.title
     assert [task.name for task in from_json.tasks] == [task.name for task in from_toml.tasks]
     for name in "ABCD":
@@ -95,7 +95,7 @@ def test_any_text_is_parsed_or_refused(text: str) -> None:
 
 @given(st.data())
 def test_any_damage_to_a_file_is_found_out(data: st.DataObject) -> None:
-    text = SERVO.read_text(encoding="utf-8")
+    text = SERVO.read_text("utf-8")
     start = data.draw(st.integers(0, len(text)))
     end = data.draw(st.integers(start, min(len(text), start + 12)))
     put = data.draw(st.text(alphabet="[](){};,.=\"'+-*/^01 sxi\n", max_size=3))

@@ -31,7 +31,7 @@ def test_a_sentence_names_what_exists_and_speaks_english(key: str) -> None:
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_every_worked_example_asks(path) -> None:  # type: ignore[no-untyped-def]  # noqa: ANN001
-    question = question_of(read(path.read_text(encoding="utf-8"), path.name))
+    question = question_of(read(path.read_text("utf-8"), path.name))
     text = str(render(question, "text"))
     assert "Given\n-----\n" in text
     assert "\nTask" in text

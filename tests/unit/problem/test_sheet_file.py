@@ -29,9 +29,9 @@ def folder_of_a_sheet(tmp_path: Path) -> Path:
     """A problem of one part, one of three, one that is no TOML, and pictures."""
     folder = tmp_path / "sheet"
     folder.mkdir()
-    (folder / "one.toml").write_text('task = "observability"\n', encoding="utf-8")
-    (folder / "three.toml").write_text('tasks = ["observability", "observer", "pbh"]\n', encoding="utf-8")
-    (folder / "broken.toml").write_text("tasks = [", encoding="utf-8")
+    (folder / "one.toml").write_text('task = "observability"\n', "utf-8")
+    (folder / "three.toml").write_text('tasks = ["observability", "observer", "pbh"]\n', "utf-8")
+    (folder / "broken.toml").write_text("tasks = [", "utf-8")
     for name in ("logo.png", "false.jpg", "a b.png", "../outside.png"):
         (folder / name).write_bytes(PNG)
     return folder
@@ -40,7 +40,7 @@ def folder_of_a_sheet(tmp_path: Path) -> Path:
 def errors_of(text: str, folder: Path) -> list[str]:
     def opened(path: str) -> str:
         try:
-            return Path(path).read_text(encoding="utf-8")
+            return Path(path).read_text("utf-8")
         except OSError as error:
             raise InputError(str(error.strerror), where=path, repair="give another") from None
 
@@ -76,7 +76,7 @@ file = "one.toml"
 points = 10
 space = 2
 """
-    sheet = read_sheet(text, "sheet.toml", folder, lambda path: Path(path).read_text(encoding="utf-8"))
+    sheet = read_sheet(text, "sheet.toml", folder, lambda path: Path(path).read_text("utf-8"))
     head = sheet.header
     assert (sheet.title, head.course, head.term, head.number, head.due) == ("T", "C", "S", "3", date(2026, 12, 8))
     assert (head.instructor, head.text, head.is_exam, head.has_name) == ("I", "W", True, True)
@@ -154,7 +154,7 @@ def test_what_is_no_sheet_is_refused(text: str, said: str, folder: Path) -> None
 
 def test_parts_of_a_problem_that_cannot_be_read_are_not_counted(folder: Path) -> None:
     text = '[[problem]]\nfile = "broken.toml"\npoints = [1, 2]\n'
-    sheet = read_sheet(text, "sheet.toml", folder, lambda path: Path(path).read_text(encoding="utf-8"))
+    sheet = read_sheet(text, "sheet.toml", folder, lambda path: Path(path).read_text("utf-8"))
     assert len(sheet.problems[0].points) == 2
 
 
@@ -174,7 +174,7 @@ def test_anything_else_is_a_problem(text: str) -> None:
 
 
 def test_the_guide_names_every_key() -> None:
-    guide = (ROOT / "docs" / "sheets.md").read_text(encoding="utf-8")
+    guide = (ROOT / "docs" / "sheets.md").read_text("utf-8")
     assert [key for key in (*SHEET, *PROBLEM) if f"`{key}`" not in guide] == []
 
 
@@ -185,7 +185,7 @@ def test_the_schema_fits_a_sheet_and_refuses_what_the_reader_refuses(folder: Pat
     schema = sheet_schema()
     Draft202012Validator.check_schema(schema)
     validator = Draft202012Validator(schema)
-    tables = tomllib.loads((ROOT / "worked_examples" / "sheets" / "observers.toml").read_text(encoding="utf-8"))
+    tables = tomllib.loads((ROOT / "worked_examples" / "sheets" / "observers.toml").read_text("utf-8"))
     assert set(tables) <= set(schema["properties"]) == set(SHEET)
     assert list(validator.iter_errors(tables)) == []
     entry = {"file": "one.toml"}
@@ -209,4 +209,4 @@ def test_the_schema_fits_a_sheet_and_refuses_what_the_reader_refuses(folder: Pat
         text = "".join(f"{key} = {json.dumps(value)}\n" for key, value in ({"problem": [entry]} | change).items())
         text = re.sub(r'"(\w+)": ', r"\1 = ", text)
         with pytest.raises(ProblemErrors):
-            read_sheet(text, "sheet.toml", folder, lambda path: Path(path).read_text(encoding="utf-8"))
+            read_sheet(text, "sheet.toml", folder, lambda path: Path(path).read_text("utf-8"))

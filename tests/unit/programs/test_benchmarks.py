@@ -130,7 +130,7 @@ def test_giac_agrees_and_a_difference_would_be_seen(stem: str, formulation: str,
 def test_gp_finds_the_gain_of_symobs(formulation: str, tmp_path: Path) -> None:
     path = other_systems.formulations("pari", "")[formulation]
     program = tmp_path / path.name
-    program.write_text(path.read_text(encoding="utf-8") + "print(Vec(L[,1]));\n", encoding="utf-8")
+    program.write_text(path.read_text("utf-8") + "print(Vec(L[,1]));\n", "utf-8")
     A, C, poles = models.rational(4)
     design = symobs.observer(symobs.StateSpace(A, None, C), poles=poles)
     done = other_systems.gp(program, 4, 60)

@@ -294,7 +294,7 @@ def test_no_clock_and_no_program_decides_an_answer(folder: str) -> None:
     for path in paths:
         imported = {
             alias.name.partition(".")[0] if isinstance(node, ast.Import) else (node.module or "").partition(".")[0]
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            for node in ast.walk(ast.parse(path.read_text("utf-8")))
             if isinstance(node, ast.Import | ast.ImportFrom)
             for alias in node.names
         }

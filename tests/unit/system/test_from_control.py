@@ -12,14 +12,15 @@ import pytest
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
+from tests.kit import SERVO, text_of
 
 
 def test_the_page_says_what_was_read() -> None:
     plant = StateSpace.from_control(control.ss([[0, 1], [0, -1]], [[0], [1]], [[1, 0]], [[0]]))
     sentence = "shortest decimals that represent them"
-    assert sentence in " ".join(symobs.observer(plant, poles=[-10, -10]).to("text").split())
-    exact = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-    assert sentence not in " ".join(symobs.observer(exact, poles=[-10, -10]).to("text").split())
+    assert sentence in text_of(symobs.observer(plant, poles=[-10, -10]))
+    exact = SERVO
+    assert sentence not in text_of(symobs.observer(exact, poles=[-10, -10]))
 
 
 @pytest.mark.parametrize(

@@ -17,10 +17,9 @@ import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError, ShapeMismatch, SymobsError
 from symobs.tasks.result import tasks
-from tests.kit import tabled
+from tests.kit import SERVO, tabled
 
 s, k = sympy.symbols("s k")
-SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 
 
 # -- numbers ----------------------------------------------------------------------------------------------------------

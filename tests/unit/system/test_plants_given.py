@@ -15,14 +15,13 @@ import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
 from symobs.problem import read
-from tests.kit import tabled
+from tests.kit import SERVO, tabled, text_of
 
 b, p, s, z = sympy.symbols("b p s z")
 
 
-def text_of(transfer_function: object, dt: object = 0) -> str:
-    result = symobs.observability(StateSpace.from_transfer_function(transfer_function, dt))
-    return " ".join(str(result.to("text")).split())
+def observability_page(transfer_function: object, dt: object = 0) -> str:
+    return text_of(symobs.observability(StateSpace.from_transfer_function(transfer_function, dt)))
 
 
 @pytest.mark.parametrize(
@@ -45,7 +44,7 @@ def text_of(transfer_function: object, dt: object = 0) -> str:
 )
 def test_a_pole_that_cancels_is_a_finding(function: object, dt: int, said: str) -> None:
     """The expected poles are those of the written denominator that are none of the function's."""
-    assert re.search(said, text_of(function, dt))
+    assert re.search(said, observability_page(function, dt))
 
 
 @pytest.mark.parametrize(
@@ -66,11 +65,6 @@ def test_what_a_fraction_divides_by_stays_a_condition(function: object) -> None:
         )
     positive = StateSpace.from_transfer_function(function, symbols={"b": "positive"})
     assert not symobs.observability(positive).conditions
-
-
-# -- shapes -----------------------------------------------------------------------------------------------------------
-
-SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 
 
 # -- systems of other programs ----------------------------------------------------------------------------------------
@@ -99,7 +93,7 @@ def test_systems_of_python_control_are_plants() -> None:
         result = symobs.observer(system, poles=[-1, -2])
         error = SERVO.A - result.L * SERVO.C
         assert (error.trace(), error.det()) == (-3, 2)
-        assert "shortest decimals" in " ".join(str(result.to("text")).split())
+        assert "shortest decimals" in text_of(result)
     sampled = symobs.observability(control.tf([1], [1, 0.5], 0.1)).plant
     assert (sampled.A, sampled.dt) == (sympy.Matrix([[-sympy.Rational(1, 2)]]), sympy.Rational(1, 10))
 

@@ -28,7 +28,7 @@ import symobs_claims_1 as claims
 
 def variant(data):
     folder = Path(data.get("options", {}).get("question_path", "."))
-    variants = json.loads((folder / "variants.json").read_text(encoding="utf-8"))
+    variants = json.loads((folder / "variants.json").read_text("utf-8"))
     return variants[int(data["variant_seed"]) % len(variants)]
 
 

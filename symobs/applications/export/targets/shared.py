@@ -27,7 +27,7 @@ MOST_EXACT = 10**15
 
 def claims_module() -> str:
     """Return the grader as one module of the standard library: its values, then its claims."""
-    head, tail = (Path(str(module.__file__)).read_text(encoding="utf-8") for module in (values, claims))
+    head, tail = (Path(str(module.__file__)).read_text("utf-8") for module in (values, claims))
     return f"{head.rstrip()}\n\n\n{tail[tail.index(_BEGIN) :]}"
 
 

@@ -39,7 +39,7 @@ def rows(_: Settings) -> Iterator[Row]:
 def spent_on(file: Path) -> dict[str, float]:
     """Return the processor time from a file to each format; what they share counts for each."""
     start = time.process_time()
-    problem = validate(parse(file.read_text(encoding="utf-8"), str(file)), None, file.parent)
+    problem = validate(parse(file.read_text("utf-8"), str(file)), None, file.parent)
     document = problem.document(problem.solve())
     solved = time.process_time()
     _ = document.derivations

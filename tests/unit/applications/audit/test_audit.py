@@ -224,7 +224,7 @@ def files(tmp_path: Path) -> dict[str, str]:
         "worse": '{"title": 3}',
     }
     for name, text in texts.items():
-        (tmp_path / f"{name}.json").write_text(text, encoding="utf-8")
+        (tmp_path / f"{name}.json").write_text(text, "utf-8")
     return {name: str(tmp_path / f"{name}.json") for name in texts}
 
 
@@ -247,10 +247,10 @@ def test_errors_of_all_files_are_told_together(files: dict[str, str]) -> None:
 
 def test_a_convention_of_the_user_s_own_lies_beside_the_file(tmp_path: Path) -> None:
     own = 'name = "lecture"\nfeedback = "u = K x_hat"\nobserver = "A + N C"\n[letters]\ne = "x_bar"\n'
-    (tmp_path / "lecture.toml").write_text(own, encoding="utf-8")
+    (tmp_path / "lecture.toml").write_text(own, "utf-8")
     relations = ("N = [-19; -81]", "A + N C = [-19 1; -81 -1]", "x_bar' = (A + N C) x_bar", "N = [19; 81]")
     printed = [{"relation": relation} for relation in relations]
-    (tmp_path / "file.json").write_text(problem(convention="lecture", printed=printed), encoding="utf-8")
+    (tmp_path / "file.json").write_text(problem(convention="lecture", printed=printed), "utf-8")
     run = inside("audit", "file.json", folder=tmp_path)
     assert run.code == 4
     assert "all signs are wrong" in run.out
@@ -261,7 +261,7 @@ def test_a_convention_of_the_user_s_own_lies_beside_the_file(tmp_path: Path) -> 
 def test_every_format_says_what_is_wrong(name: str, files: dict[str, str], tmp_path: Path) -> None:
     target = tmp_path / "found"
     assert inside("audit", files["wrong"], "--format", name, "-o", str(target)).code == 4
-    written = target.read_text(encoding="utf-8")
+    written = target.read_text("utf-8")
     assert "L = [19; 82]" in written
     assert "L = [19; 81]" in written
     assert "entry (2, 1) is 81, not 82" in written

@@ -147,5 +147,5 @@ def test_a_transfer_function_at_a_pole_has_no_value() -> None:
 def test_expected_decimals_are_compared_as_printed(tmp_path: Path) -> None:
     expected = {"F": "(778.2 s + 3690.7)/(s^2 + 19.6 s + 151.2)", "K": "[29.6 3.60]", "L": "[16.0; 85.]"}
     for expect, code in ((expected, 0), ({**expected, "L": "[16.0; 85]"}, 4), ({**expected, "K": "[29.5 3.6]"}, 4)):
-        (tmp_path / "file.json").write_text(problem(**OGATA, expect=expect), encoding="utf-8")
+        (tmp_path / "file.json").write_text(problem(**OGATA, expect=expect), "utf-8")
         assert inside("solve", "file.json", folder=tmp_path).code == code

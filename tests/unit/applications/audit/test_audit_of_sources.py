@@ -19,7 +19,7 @@ from tests.support.tools.command_line import EXAMPLES
 if TYPE_CHECKING:
     from symobs.applications.audit import Audited, Finding
 
-PRINTED = [path for path in EXAMPLES if "[[printed]]" in path.read_text(encoding="utf-8")]
+PRINTED = [path for path in EXAMPLES if "[[printed]]" in path.read_text("utf-8")]
 
 # Erratum → (right equations, one word of the reason for each).  An empty equation: nothing of these sizes is right.
 MATHEMATICAL = tables(Path(__file__))["mathematical"]
@@ -40,7 +40,7 @@ EXPECTED = MATHEMATICAL | OTHERS
 
 @cache
 def audited() -> tuple[Audited, ...]:
-    return tuple(audit(read(path.read_text(encoding="utf-8"))) for path in PRINTED)
+    return tuple(audit(read(path.read_text("utf-8"))) for path in PRINTED)
 
 
 def found(erratum: str) -> list[Finding]:

@@ -91,7 +91,7 @@ def cluster(folder: Path, workers: int) -> Iterator[Cluster]:
 def problems(folder: Path, count: int) -> Path:
     folder.mkdir(exist_ok=True)
     for number in range(count):
-        (folder / f"p{number:04}.toml").write_text(design(number), encoding="utf-8")
+        (folder / f"p{number:04}.toml").write_text(design(number), "utf-8")
     return folder
 
 
@@ -203,7 +203,7 @@ def test_a_worker_of_another_version_is_refused_before_any_work(tmp_path: Path) 
     folder, other = problems(tmp_path / "problems", 2), tmp_path / "other"
     shutil.copytree(ROOT / "symobs", other / "symobs")
     jobs = other / "symobs" / "applications" / "batch" / "jobs.py"
-    jobs.write_text(jobs.read_text(encoding="utf-8").replace("symobs-batch/1", "symobs-batch/0"), encoding="utf-8")
+    jobs.write_text(jobs.read_text("utf-8").replace("symobs-batch/1", "symobs-batch/0"), "utf-8")
     with cluster(tmp_path / "cluster", 1) as found:
         found.start_worker(other)
         assert eventually(lambda: _workers(found.address) == 2)

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 pytest.importorskip("distributed")
 pytestmark = pytest.mark.slow
 
-PAGE = (ROOT / "docs" / "cluster.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "cluster.md").read_text("utf-8")
 _, HERE, GRID, CLUSTER = (
     block.splitlines() for block in re.findall(r"^```sh\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
 )
@@ -31,9 +31,9 @@ PROGRAMS = {"symobs": [sys.executable, "-m", "symobs"], "dask": [sys.executable,
 def folder_of_the_page(tmp_path: Path) -> Path:
     (tmp_path / "problems").mkdir()
     for number in range(120):
-        (tmp_path / "problems" / f"p{number}.toml").write_text(design(number), encoding="utf-8")
+        (tmp_path / "problems" / f"p{number}.toml").write_text(design(number), "utf-8")
     (cart,) = re.findall(r"`cart\.toml`:\n\n```toml\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
-    (tmp_path / "cart.toml").write_text(cart, encoding="utf-8")
+    (tmp_path / "cart.toml").write_text(cart, "utf-8")
     return tmp_path
 
 
@@ -49,6 +49,6 @@ def test_its_lines_for_one_machine(folder: Path) -> None:
         path.unlink()
     for line in (*HERE, *GRID):
         with started(line, folder) as process:
-            assert process.wait(timeout=SAFETY) == 0, (line, (folder / "log.txt").read_text(encoding="utf-8"))
+            assert process.wait(timeout=SAFETY) == 0, (line, (folder / "log.txt").read_text("utf-8"))
     assert len(list((folder / "results" / "files").rglob("*.tex"))) == 4
-    assert len((folder / "designs.csv").read_text(encoding="utf-8").splitlines()) == 81
+    assert len((folder / "designs.csv").read_text("utf-8").splitlines()) == 81

@@ -37,7 +37,7 @@ def spoilt(answer: Any) -> Any:
 def test_the_worked_examples_hold_and_changed_ones_do_not() -> None:
     looked_at: dict[str, int] = {}
     for path in QUICK:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text("utf-8")
         if not any(f'"{task}"' in text for task in CLAIMS) or "minimal" in text or "sqrt" in text:
             continue
         for task, given, answer in answered(text):

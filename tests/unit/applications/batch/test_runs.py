@@ -75,13 +75,13 @@ def test_the_same_rows_whoever_works(tmp_path: Path) -> None:
     files = []
     for number in range(4, 10):
         files.append(tmp_path / f"p{number}.toml")
-        files[-1].write_text(design(number), encoding="utf-8")
-    (tmp_path / "bad.toml").write_text('task = "compensator"\n[plant]\nA = "[0 1"\n', encoding="utf-8")
+        files[-1].write_text(design(number), "utf-8")
+    (tmp_path / "bad.toml").write_text('task = "compensator"\n[plant]\nA = "[0 1"\n', "utf-8")
     files.append(tmp_path / "bad.toml")
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         ways: dict[str, dict[str, Any]] = {"one": {"workers": 1}, "two": {"workers": 2}, "own": {"executor": pool}}
         rows = {name: stored(batch(files, out=tmp_path / name, **way).folder or tmp_path) for name, way in ways.items()}
-    jobs = [solve_job(file.read_text(encoding="utf-8"), file.name, tmp_path) for file in files]
+    jobs = [solve_job(file.read_text("utf-8"), file.name, tmp_path) for file in files]
     rows["here"] = stored(run(jobs, tmp_path / "here", in_process=True).folder or tmp_path)
     assert rows["one"] == rows["two"] == rows["own"] == rows["here"]
     assert len(rows["one"]) == 7
@@ -103,23 +103,23 @@ def test_the_key_is_of_what_the_answer_depends_on(tmp_path: Path) -> None:
     decimals = [solve_job(text.replace("-1, -2", f"{pole}, -2"), "a").key for pole in ("-1.5", '"-1.5"', "-1.50")]
     assert len({*decimals}) == 3
     own = (tmp_path / "own.toml", tmp_path / "other")
-    own[0].write_text('law = "u = K x_hat"\n', encoding="utf-8")
+    own[0].write_text('law = "u = K x_hat"\n', "utf-8")
     own[1].mkdir()
-    (own[1] / "own.toml").write_text('law = "u = -K x_hat"\n', encoding="utf-8")
+    (own[1] / "own.toml").write_text('law = "u = -K x_hat"\n', "utf-8")
     written = text.replace("task", 'convention = "own"\ntask', 1)
     assert solve_job(written, "a", tmp_path).key != solve_job(written, "a", own[1]).key
 
 
 def test_pages_and_names_of_what_stands_twice(tmp_path: Path) -> None:
     for name in ("a", "b"):
-        (tmp_path / f"{name}.toml").write_text(SERVO.read_text(encoding="utf-8"), encoding="utf-8")
+        (tmp_path / f"{name}.toml").write_text(SERVO.read_text("utf-8"), "utf-8")
     out = tmp_path / "out"
     done = batch([tmp_path / "a.toml", tmp_path / "b.toml"], out=out, workers=1, formats=["text", "latex"])
     (row,) = done.rows()
     assert row["files"].keys() == {"text", "latex"}
     page = inside("solve", str(tmp_path / "a.toml"), "--format", "latex").out
-    assert (out / row["files"]["latex"]).read_text(encoding="utf-8") == page
-    manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+    assert (out / row["files"]["latex"]).read_text("utf-8") == page
+    manifest = json.loads((out / "manifest.json").read_text("utf-8"))
     assert manifest["names"] == {row["key"]: ["b.toml"]}
     assert manifest["counts"] == {"done": 1, "no": 0, "unreadable": 0, "undecided": 0, "failed": 0}
 
@@ -138,7 +138,7 @@ def test_one_job_that_misbehaves_loses_no_other(hostile: Path, tmp_path: Path) -
         "n13": ("undecided", "4 seconds were not enough"),
         "n18": ("failed", "internal error: KeyError: 'x'"),
     }
-    begun = hostile.read_text(encoding="utf-8").split()
+    begun = hostile.read_text("utf-8").split()
     assert {name: begun.count(name) for name in ("n3", "n13", "n5")} == {"n3": 2, "n13": 1, "n5": 1}
     assert eventually(lambda: {*children_of(os.getpid())} <= others)
 
@@ -255,7 +255,7 @@ def killed_and_gone_on(hostile: Path, out: Path, count: int, kills: int) -> None
         assert process.wait(timeout=SAFETY) == 0
     rows = [json.loads(text) for text in stored(out)]
     assert sorted(row["result"]["square"] for row in rows) == [n * n for n in range(count)]
-    assert len(hostile.read_text(encoding="utf-8").split()) <= count + kills * most
+    assert len(hostile.read_text("utf-8").split()) <= count + kills * most
 
 
 def test_a_killed_run_goes_on_where_it_was(hostile: Path, tmp_path: Path) -> None:
@@ -267,7 +267,7 @@ def test_an_interrupted_run_keeps_what_it_has_and_leaves_nobody(number: int, hos
     out = tmp_path / "out"
     problems = [tmp_path / f"p{n}.toml" for n in range(120)]
     for n, path in enumerate(problems):
-        path.write_text(design(n), encoding="utf-8")
+        path.write_text(design(n), "utf-8")
     command = [
         sys.executable,
         "-m",
@@ -321,7 +321,7 @@ def changed(out: Path, row: dict[str, Any]) -> None:
 
 
 def test_a_stored_result_that_was_changed_is_found(tmp_path: Path) -> None:
-    (tmp_path / "p.toml").write_text(design(5), encoding="utf-8")
+    (tmp_path / "p.toml").write_text(design(5), "utf-8")
     out = tmp_path / "out"
     batch(tmp_path / "p.toml", out=out, workers=1)
     assert verified(out) == 1
@@ -346,7 +346,7 @@ def test_other_versions_are_refused_before_any_work() -> None:
 
 
 def test_the_command_says_what_it_did_and_goes_on(tmp_path: Path) -> None:
-    (tmp_path / "bad.toml").write_text("nothing", encoding="utf-8")
+    (tmp_path / "bad.toml").write_text("nothing", "utf-8")
     arguments = ["batch", str(SERVO), str(tmp_path / "bad.toml"), "--out", str(tmp_path / "out"), "--workers", "1"]
     planned = inside(*arguments, "--dry-run")
     assert (planned.code, planned.err) == (0, "2 problems, 2 to be done, 0 done already\n")

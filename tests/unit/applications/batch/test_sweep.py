@@ -132,7 +132,7 @@ def test_numbers_put_in_wrongly_are_seen(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_tables_say_exactly_what_was_found(tmp_path: Path) -> None:
     pq = pytest.importorskip("pyarrow.parquet")
-    (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
+    (tmp_path / "cart.toml").write_text(CART, "utf-8")
     sweep = ["sweep", "cart.toml", "--over", "l=0.1:0.1:4, m=[1/3, 2, 5e-1]", "--workers", "2", "--quiet"]
     for out in ("t.csv", "t.parquet", "parts"):
         assert inside(*sweep, "--out", out, "--columns", "K,L", "--decimals", folder=tmp_path).code == 0
@@ -142,7 +142,7 @@ def test_tables_say_exactly_what_was_found(tmp_path: Path) -> None:
     table = pq.read_table(tmp_path / "t.parquet")
     assert [str(value) for value in table["K[1,3]"].to_pylist()] == [line["K[1,3]"] for line in lines]
     assert pq.read_table(tmp_path / "parts" / "part-00000.parquet").equals(table)
-    manifest = json.loads((tmp_path / "parts" / "manifest.json").read_text(encoding="utf-8"))
+    manifest = json.loads((tmp_path / "parts" / "manifest.json").read_text("utf-8"))
     assert manifest["parts"]["part-00000.parquet"]["rows"] == 120
     held = symobs.sweep(CART, "l=0.1:0.1:4, m=[1/3, 2, 5e-1]", columns="K,L", workers=1)
     rows = list(held)
@@ -188,7 +188,7 @@ def test_what_is_no_grid_is_said(over: str, where: str, says: str) -> None:
 
 @tabled
 def test_what_cannot_be_swept_is_said(arguments: list[str], code: int, says: str, tmp_path: Path) -> None:
-    (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
+    (tmp_path / "cart.toml").write_text(CART, "utf-8")
     left = inside("sweep", "cart.toml", "--over", "l=1:1:3, m=1", *arguments, folder=tmp_path)
     assert left.code == code
     assert says in left.err
@@ -196,7 +196,7 @@ def test_what_cannot_be_swept_is_said(arguments: list[str], code: int, says: str
 
 def test_functions_of_swept_names_are_solved_point_by_point_and_points_are_counted(tmp_path: Path) -> None:
     text = problem("state_feedback", "w:real", 'A = "[0 1; 0 0]"\nB = "[0; w]"', 'poles = "-exp(-w), -1"')
-    (tmp_path / "e.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "e.toml").write_text(text, "utf-8")
     words = ["--over", "w=[1/10, 0, 1]", "--out", "e.csv", "--decimals", "--in-process"]
     left = inside("sweep", "e.toml", *words, folder=tmp_path)
     assert left.err.splitlines()[-1] == "3 points: 2 done, 1 no"

@@ -29,8 +29,8 @@ def folder_of_problems(tmp_path: Path) -> Path:
     """Two problems, of which one is none."""
     folder = tmp_path / "problems"
     folder.mkdir()
-    (folder / "good.toml").write_text(design(7), encoding="utf-8")
-    (folder / "bad.toml").write_text("nothing", encoding="utf-8")
+    (folder / "good.toml").write_text(design(7), "utf-8")
+    (folder / "bad.toml").write_text("nothing", "utf-8")
     return folder
 
 
@@ -85,12 +85,12 @@ def test_names_are_what_they_are(tmp_path: Path) -> None:
     folder, out = tmp_path / "prob lems\n", tmp_path / "out ü\n"
     folder.mkdir()
     for number, name in enumerate(names):
-        (folder / name).write_text(design(number), encoding="utf-8")
+        (folder / name).write_text(design(number), "utf-8")
     (folder / "link.toml").symlink_to(SERVO)
     left = inside("batch", str(folder), "--out", str(out), "--in-process", folder=tmp_path)
     assert (left.code, left.err) == (0, "7 done\n")
     assert {row["name"] for row in Store(out).rows()} == {*names, "link.toml"}
-    assert json.loads((out / "manifest.json").read_text(encoding="utf-8"))["counts"]["done"] == 7
+    assert json.loads((out / "manifest.json").read_text("utf-8"))["counts"]["done"] == 7
 
 
 @tabled
@@ -98,7 +98,7 @@ def test_what_cannot_be_used_is_said_and_nothing_is_made(
     arguments: list[str], code: int, says: str, folder: Path, tmp_path: Path
 ) -> None:
     (tmp_path / "empty").mkdir()
-    (tmp_path / "cart.toml").write_text(CART, encoding="utf-8")
+    (tmp_path / "cart.toml").write_text(CART, "utf-8")
     left = inside(*arguments, folder=tmp_path)
     assert left.code == code, left.err
     assert says in left.err

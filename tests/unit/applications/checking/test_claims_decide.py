@@ -53,7 +53,7 @@ def test_a_verdict_is_a_word(given: object, verdict: str) -> None:
 
 @tabled
 def test_a_text_writes_a_list_in_brackets(given: str, verdict: str) -> None:
-    problem = (EXAMPLES / "servo_initial_state.toml").read_text(encoding="utf-8")
+    problem = (EXAMPLES / "servo_initial_state.toml").read_text("utf-8")
     report = Checked.of(problem).report(f"x0 = {given}\n")
     assert [part.verdict for part in report.parts] == [verdict]
     assert report.lines == ()  # x0 is an answer here, and no letter of the derivation
@@ -78,7 +78,7 @@ def test_what_does_not_exist_is_wrong_in_any_form() -> None:
 
 
 def test_tracking_does_not_depend_on_a_wrong_gain() -> None:
-    problem = Checked.of((EXAMPLES / "servo_tracking.toml").read_text(encoding="utf-8"))
+    problem = Checked.of((EXAMPLES / "servo_tracking.toml").read_text("utf-8"))
     for K_d, verdict in (("[omega^2 -1]", "right"), ("[omega^2 1]", "wrong")):
         parts = {part.letter: part for part in problem.report({"K": "[5 3]", "L": "[-9]", "K_d": K_d}).parts}
         assert (parts["K_d"].verdict, parts["K"].verdict, parts["L"].slip) == (verdict, "wrong", "sign")

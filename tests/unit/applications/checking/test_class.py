@@ -43,7 +43,7 @@ def folder(tmp_path: Path) -> Path:
     writer.writerow(["Email address", "Time", "K", "L", "compensator.F"])
     writer.writerows([row[0], "12:00", *row[1:]] for row in ROWS)
     (tmp_path / "class.csv").write_text(stream.getvalue(), encoding="utf-8-sig")
-    (tmp_path / "problem.toml").write_text(SERVO, encoding="utf-8")
+    (tmp_path / "problem.toml").write_text(SERVO, "utf-8")
     return tmp_path
 
 
@@ -55,7 +55,7 @@ def test_a_class_is_marked_and_counted(folder: Path) -> None:
     found = run(folder, "--map", "Email address=student", "--feedback")
     assert (found.code, found.err) == (0, "")
     results = folder / "RESULTS"
-    reports = [json.loads(line) for line in (results / "results.jsonl").read_text(encoding="utf-8").splitlines()]
+    reports = [json.loads(line) for line in (results / "results.jsonl").read_text("utf-8").splitlines()]
     validator = Draft202012Validator(schema())
     for report in reports:
         validator.validate(report)
@@ -69,11 +69,11 @@ def test_a_class_is_marked_and_counted(folder: Path) -> None:
         "big": "unreadable",
         "../../etc": "unreadable",
     }
-    marks = list(csv.reader(io.StringIO((results / "marks.csv").read_text(encoding="utf-8"))))
+    marks = list(csv.reader(io.StringIO((results / "marks.csv").read_text("utf-8"))))
     assert marks[0] == ["student", "variant", "verdict", "score", *(f"part:compensator.{name}" for name in "KLF")]
     assert marks[1] == ["s2", "", "wrong", "1.50", "right", "wrong", "missing"]
     assert marks[5][0] == "'=cmd()"
-    summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
+    summary = json.loads((results / "summary.json").read_text("utf-8"))
     assert summary["superseded"] == [{"student": "s1", "place": "line 2"}]
     assert summary["verdicts"] == {"unreadable": 2, "wrong": 5}
     assert summary["slips"]["compensator.L"][0] == {"slip": "entry", "count": 1, "students": ["s1"]}
@@ -108,7 +108,7 @@ def test_a_report_is_read_back_as_it_was(show: str) -> None:
 
 @tabled
 def test_a_table_that_cannot_be_used_is_refused(folder: Path, table: str, mapped: list[str], message: str) -> None:
-    (folder / "class.csv").write_text(table, encoding="utf-8")
+    (folder / "class.csv").write_text(table, "utf-8")
     found = run(folder, *(part for entry in mapped for part in ("--map", entry)))
     assert found.code == 3
     assert message in found.err

@@ -45,14 +45,14 @@ def manifest() -> dict[str, Any]:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    (tmp_path / "problem.toml").write_text(PROBLEM, encoding="utf-8")
+    (tmp_path / "problem.toml").write_text(PROBLEM, "utf-8")
     (tmp_path / "SET").mkdir()
-    (tmp_path / "SET" / "manifest.json").write_text(json.dumps(manifest()), encoding="utf-8")
+    (tmp_path / "SET" / "manifest.json").write_text(json.dumps(manifest()), "utf-8")
     return tmp_path
 
 
 def run(folder: Path, table: str, *more: str, manifest: str = "SET") -> Run:
-    (folder / "class.csv").write_text(table, encoding="utf-8")
+    (folder / "class.csv").write_text(table, "utf-8")
     arguments = ["problem.toml", "--submissions", "class.csv", "--variants", manifest, "-o", "OUT", *more]
     return inside("check", *arguments, folder=folder)
 
@@ -90,7 +90,7 @@ h,,[3; 2]
         "g": ("v9", "unreadable", ""),
         "h": ("", "unreadable", ""),
     }
-    reports = [json.loads(line) for line in (folder / "OUT" / "results.jsonl").read_text(encoding="utf-8").splitlines()]
+    reports = [json.loads(line) for line in (folder / "OUT" / "results.jsonl").read_text("utf-8").splitlines()]
     assert [report["title"] for report in reports[:3]] == ["v001", "v002", "v003"]
     assert [report["parts"][0]["reason"] for report in reports[6:]] == [
         "variant: there is no variant v9; write v001 to v003",
@@ -98,16 +98,16 @@ h,,[3; 2]
     ]
     assert reports[4]["parts"][0]["effect"]["polynomial"] == "s**2 + 3*s + 2"
     assert len(list((folder / "OUT" / "feedback").iterdir())) == 8
-    summary = json.loads((folder / "OUT" / "summary.json").read_text(encoding="utf-8"))
+    summary = json.loads((folder / "OUT" / "summary.json").read_text("utf-8"))
     assert summary["title"] == "Gains"
     assert (summary["mean"], summary["without_variant"]) == ("8/3", ["g", "h"])  # (4 + 4 + 4 + 4 + 0 + 0)/6
     assert list(summary["variants"]) == ["v001", "v002", "v003"]
     assert summary["variants"]["v002"] == {"students": 3, "mean": "8/3", "mean_decimal": "2.67", "squares": "32/3"}
-    assert "| v003 | 1 | 4.00 |" in (folder / "OUT" / "summary.md").read_text(encoding="utf-8")
+    assert "| v003 | 1 | 4.00 |" in (folder / "OUT" / "summary.md").read_text("utf-8")
 
 
 def test_the_assignment_beside_the_manifest_says_who_has_which(folder: Path) -> None:
-    (folder / "SET" / "assignment.csv").write_text("student,variant\na,v002\n'=b,v003\n", encoding="utf-8")
+    (folder / "SET" / "assignment.csv").write_text("student,variant\na,v002\n'=b,v003\n", "utf-8")
     assert run(folder, "student,L\na,[8; 15]\n=b,[9; 14]\nc,[3; 2]\n").code == 0
     assert marks(folder) == {
         "a": ("v002", "right", "4.00"),
@@ -120,7 +120,7 @@ def test_the_assignment_beside_the_manifest_says_who_has_which(folder: Path) -> 
 
 @tabled
 def test_a_manifest_that_cannot_be_used_is_refused(folder: Path, written: str, message: str) -> None:
-    (folder / "SET" / "manifest.json").write_text(written, encoding="utf-8")
+    (folder / "SET" / "manifest.json").write_text(written, "utf-8")
     found = run(folder, "student,variant,L\na,v001,[3; 2]\n")
     assert (found.code, message in found.err) == (3, True), found.err
     assert not (folder / "OUT").exists()
@@ -129,7 +129,7 @@ def test_a_manifest_that_cannot_be_used_is_refused(folder: Path, written: str, m
 def test_a_class_in_which_nobody_says_the_variant_is_refused(folder: Path) -> None:
     found = run(folder, "student,L\na,[3; 2]\nb,[3; 2]\n")
     assert (found.code, "no submission says which variant it answers" in found.err) == (3, True)
-    (folder / "SET" / "assignment.csv").write_text("name,v\na,v002\n", encoding="utf-8")
+    (folder / "SET" / "assignment.csv").write_text("name,v\na,v002\n", "utf-8")
     found = run(folder, "student,L\na,[3; 2]\n")
     assert (found.code, "the columns student and variant are expected" in found.err) == (3, True)
     one = inside("check", "problem.toml", "class.csv", "--variants", "SET", folder=folder)

@@ -9,7 +9,7 @@ import pytest
 
 from symobs.applications.checking import Checked
 
-CORPUS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+CORPUS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 
 
 @pytest.mark.parametrize("name", CORPUS)

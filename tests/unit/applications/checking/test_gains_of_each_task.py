@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     import pytest
 
 EXAMPLES = ROOT / "worked_examples"
-UNKNOWN_INPUT = (EXAMPLES / "unknown_input_observer.toml").read_text(encoding="utf-8")
-NOT_DECOUPLED = (EXAMPLES / "unknown_input_not_decoupled.toml").read_text(encoding="utf-8")
-SERVO_FEEDFORWARD = (EXAMPLES / "servo_feedforward.toml").read_text(encoding="utf-8")
+UNKNOWN_INPUT = (EXAMPLES / "unknown_input_observer.toml").read_text("utf-8")
+NOT_DECOUPLED = (EXAMPLES / "unknown_input_not_decoupled.toml").read_text("utf-8")
+SERVO_FEEDFORWARD = (EXAMPLES / "servo_feedforward.toml").read_text("utf-8")
 #: ẋ = u₁ + u₂, y = x: K = [k₁; k₂] with k₁ + k₂ = 2, and F = [f₁; f₂] with f₁ + f₂ = k₁ + k₂.
 TWO_INPUTS = (
     'task = "feedforward"\n[plant]\nA = "[0]"\nB = "[1 1]"\nC = "[1]"\n'
@@ -100,6 +100,6 @@ def test_any_compensator_closes_the_loop_if_it_is_proper_and_of_no_larger_order(
 
 def test_any_gain_that_follows_the_one_reference_is_right() -> None:
     """The trajectory is (v t, 0, 0, v): the second and third entry of K_d multiply 0."""
-    text = (EXAMPLES / "cart_tracking.toml").read_text(encoding="utf-8")
+    text = (EXAMPLES / "cart_tracking.toml").read_text("utf-8")
     for gain, verdict in (("[0 2 3 0]", "right"), ("[1 0 0 0]", "wrong"), ("[0 0 0 1]", "wrong")):
         assert [part.verdict for part in check(text, {"K_d": gain}).parts if part.given] == [verdict]

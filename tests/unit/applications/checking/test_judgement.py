@@ -52,7 +52,7 @@ def own_answer(checked: Checked) -> dict[str, dict[str, Any]]:
 def test_our_own_answer_is_right_in_every_worked_example() -> None:
     tasks = set()
     for path in sorted(EXAMPLES.glob("*.toml")):
-        checked = Checked.of(read(path.read_text(encoding="utf-8"), path.name, EXAMPLES))
+        checked = Checked.of(read(path.read_text("utf-8"), path.name, EXAMPLES))
         tasks |= {result.task for result in checked.results}
         report = checked.report(own_answer(checked))
         too_long = path.stem == "cart_pole"  # its F has 35,615 characters

@@ -212,9 +212,7 @@ def test_an_empty_answer_is_not_filled_in() -> None:
         assert (report.parts[0].verdict, report.parts[0].slip) == ("wrong", "one_coefficient")
         assert _given_away(report, "17", "s^2") == []
     tracking = ROOT / "worked_examples" / "cart_tracking_angle.toml"  # K_d = [0 -539/50 0 0]
-    report = Checked.of(read(tracking.read_text(encoding="utf-8"), tracking.name, tracking.parent)).report(
-        "K_d = [0 0 0 0]\n"
-    )
+    report = Checked.of(read(tracking.read_text("utf-8"), tracking.name, tracking.parent)).report("K_d = [0 0 0 0]\n")
     assert report.parts[0].reason == report.lines[0].reason == "entry (1, 2) is wrong"
 
 

@@ -195,7 +195,7 @@ def test_hostile_text_stands_literally_in_the_other_exports(hostile: str) -> Non
 def test_the_gains_of_integral_action_are_refused(tmp_path: Path) -> None:
     file = tmp_path / "servo.toml"
     plant = '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
-    file.write_text(f'task = "integral_action"\n{plant}[specification]\npoles = "-1, -2, -3"\n', encoding="utf-8")
+    file.write_text(f'task = "integral_action"\n{plant}[specification]\npoles = "-1, -2, -3"\n', "utf-8")
     ended = run("export", file, "--to", "stack", "-o", tmp_path / "out")
     assert ended.code == 3
     assert "integral_action.k_I: an exported grader does not hold K and k_I" in ended.err

@@ -53,7 +53,7 @@ def installed(each: ExerciseSet, folder: Path) -> dict[str, str]:
     """Write an export into a folder, with the stand-in beside it; return the files of the question."""
     files = {name.split("/")[-1]: str(text) for name, text in export("prairielearn", [each]).items()}
     for name, text in {**files, "prairielearn.py": RUNTIME, "driver.py": DRIVER}.items():
-        (folder / name).write_text(text, encoding="utf-8")
+        (folder / name).write_text(text, "utf-8")
     return files
 
 

@@ -83,7 +83,7 @@ def asked(problem: object, want: str = "answer", **more: object) -> dict[str, An
 
 
 def data_of(path: Path) -> dict[str, Any]:
-    return tomllib.loads(path.read_text(encoding="utf-8"), parse_float=str)
+    return tomllib.loads(path.read_text("utf-8"), parse_float=str)
 
 
 @pytest.mark.slow

@@ -206,7 +206,7 @@ sys.meta_path.insert(0, Finder())
 
 
 def test_an_interrupt_while_the_first_child_is_started_is_all_that_is_said(tmp_path: Path) -> None:
-    (tmp_path / "sitecustomize.py").write_text(_SLOW_START, encoding="utf-8")
+    (tmp_path / "sitecustomize.py").write_text(_SLOW_START, "utf-8")
     begun = tmp_path / "begun"
     paths = {"BEGUN": str(begun), "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
     with subprocess.Popen(

@@ -46,12 +46,10 @@ def test_the_folder_holds_everything_that_it_asks_for(given: tuple[Path, Path], 
     asked = set(_asked(out))
     assert {"start-wasm.js", "symobs-live.js", "live.css", "worker.js", "offline.js", "symobs.zip"} <= asked
     assert asked - set(files) - {"pyodide/"} == set()
-    page = files["index.html"].read_text(encoding="utf-8")
+    page = files["index.html"].read_text("utf-8")
     assert "script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self';" in page
     assert "<math" in page.partition('class="first"')[2]  # there is something to read while Python is loaded
-    whole = "".join(
-        path.read_text(encoding="utf-8") for name, path in files.items() if name.endswith(("html", "js", "css"))
-    )
+    whole = "".join(path.read_text("utf-8") for name, path in files.items() if name.endswith(("html", "js", "css")))
     assert "https:" not in whole
     assert "eval(" not in whole
     assert "Pyodide 1.2.3" in files["THIRD-PARTY.txt"].read_text()
@@ -63,7 +61,7 @@ def test_the_folder_holds_everything_that_it_asks_for(given: tuple[Path, Path], 
 def _asked(out: Path) -> Iterator[str]:
     """Every file that the page and its scripts name."""
     for path in (out / "index.html", *out.glob("*.js")):
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text("utf-8")
         yield from re.findall(r'(?:src|href)="([\w./-]+)"', text)
         yield from re.findall(r'(?:from|import|here\(|importScripts\(|Worker\(|register\() ?"(?:\./)?([\w./-]+)"', text)
 

@@ -14,7 +14,7 @@ from tests.support.paths import ROOT
 
 SITE = ROOT / "symobs" / "applications" / "live" / "site"
 FILES = (ASSETS / "symobs-live.js", SITE / "start-wasm.js", SITE / "worker.js")
-SOURCE = "".join(path.read_text(encoding="utf-8") for path in FILES)
+SOURCE = "".join(path.read_text("utf-8") for path in FILES)
 #: Words of which the script makes the names: `case_yes`.
 MADE = re.findall(r"\[?`(\w+_)\$\{\w+(?:\.\w+)?\}`", SOURCE)
 

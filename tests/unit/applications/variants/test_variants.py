@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 FOLDER = ROOT / "worked_examples" / "variants"
-GOLDEN = json.loads((ROOT / "tests" / "unit" / "applications" / "variants" / "golden.json").read_text(encoding="utf-8"))
-OBSERVER = (FOLDER / "observer.toml").read_text(encoding="utf-8")
+GOLDEN = json.loads((ROOT / "tests" / "unit" / "applications" / "variants" / "golden.json").read_text("utf-8"))
+OBSERVER = (FOLDER / "observer.toml").read_text("utf-8")
 
 
 def found(text: str, count: int, seed: int = 7, **more: Any) -> Variants:
@@ -69,7 +69,7 @@ def numbers_of_page(text: str) -> Iterator[str]:
 @pytest.mark.slow
 @tabled
 def test_variants_of_the_examples(name: str) -> None:
-    text = (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
+    text = (FOLDER / f"{name}.toml").read_text("utf-8")
     variants = found(text, 4)
     assert golden(variants) == GOLDEN[name][:4]
     for each in variants:

@@ -149,7 +149,7 @@ def test_pages_speak_the_letters_of_their_book(name: str) -> None:
 @pytest.mark.parametrize("path", every(2, EXAMPLES), ids=lambda path: path.stem)
 def test_every_page_holds_in_every_convention(path: Path) -> None:
     """Each translated line is checked again before it is told."""
-    found = read(path.read_text(encoding="utf-8"))
+    found = read(path.read_text("utf-8"))
     results = found.solve()
     for name in ("S1", "S2", "S4"):
         assert render(Document(found.title, found.source, results, convention_named(name)), "text")
@@ -236,10 +236,10 @@ phi_o = "p_o"
 
 
 def test_a_convention_of_one_s_own(tmp_path: Path) -> None:
-    (tmp_path / "lecture.toml").write_text(OWN, encoding="utf-8")
+    (tmp_path / "lecture.toml").write_text(OWN, "utf-8")
     file = tmp_path / "problem.toml"
     expect = '[expect]\nR = "[-2 -2]"\nN = "[-3; -2]"\n'
-    file.write_text('convention = "lecture"\n' + DESIGN + expect, encoding="utf-8")
+    file.write_text('convention = "lecture"\n' + DESIGN + expect, "utf-8")
     run = inside("solve", str(file), "--format", "text")
     assert (run.code, run.err) == (0, "")
     for line in ("u = R x̂", "A + N C", "ε = x - x̂", "[A, C] is observable", "p_o(s)"):
@@ -279,15 +279,15 @@ def test_a_convention_that_does_not_exist(tmp_path: Path) -> None:
     with pytest.raises(ProblemErrors, match="no convention can be read"):
         convention_named(str(tmp_path / "none.toml"))
     assert inside("solve", str(EXAMPLES[0]), "--convention", "S9").code == 2
-    (tmp_path / "evil.toml").write_text("x = " + "[" * 10_000, encoding="utf-8")
+    (tmp_path / "evil.toml").write_text("x = " + "[" * 10_000, "utf-8")
     with pytest.raises(
         ProblemErrors, match=r"evil\.toml: no convention can be read: line 1: brackets are nested more than 100"
     ):
         convention_named(str(tmp_path / "evil.toml"))
-    (tmp_path / "dots.toml").write_text("a." * 9_000 + "a = 1", encoding="utf-8")
+    (tmp_path / "dots.toml").write_text("a." * 9_000 + "a = 1", "utf-8")
     with pytest.raises(ProblemErrors, match="a dotted key has more than 10 parts"):  # tomllib would take 400 MB
         convention_named(str(tmp_path / "dots.toml"))
-    (tmp_path / "secret.toml").write_text(OWN, encoding="utf-8")
+    (tmp_path / "secret.toml").write_text(OWN, "utf-8")
     for named in ("../secret", f"{tmp_path}/secret.toml.toml", "../secret.toml"):
         with pytest.raises(ProblemErrors, match="is not a convention"):
             read(f'convention = "{named}"\n' + DESIGN, folder=tmp_path / "inner")

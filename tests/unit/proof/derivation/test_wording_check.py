@@ -27,7 +27,7 @@ from symobs.formula.tree import (
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation.wording_check import Said, _one_higher, fits
 from symobs.proof.derivation.wording_check import rests as rests_on
-from tests.kit import tabled
+from tests.kit import SERVO, tabled
 from tests.support.problems.steps import said
 from tests.support.tampering.mutations import lines_of
 
@@ -288,7 +288,7 @@ def test_several_poles_are_not_told_as_one(said: str, instead: str) -> None:
 
 
 def test_the_equations_that_are_substituted_are_those_of_the_input_and_of_the_observer() -> None:
-    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    plant = SERVO
     derivation = symobs.compensator(plant, control_poles=[-2, -2], observer_poles=[-10, -10]).derivation
     line, step = line_saying("observer_closed_matrix", derivation)
     slots = dict(step.sentence.slots)

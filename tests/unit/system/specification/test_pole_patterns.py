@@ -19,7 +19,7 @@ from symobs.problem.file_tables import parse
 from symobs.problem.question import question_of
 from symobs.system.specification import PolePattern
 from symobs.tasks.result import render
-from tests.kit import tabled
+from tests.kit import tabled, text_of
 
 
 def integrators(order: int, **symbols: str) -> symobs.StateSpace:
@@ -156,7 +156,7 @@ def test_in_discrete_time_they_are_refused() -> None:
 def test_a_page_says_what_was_specified_and_nothing_else(
     poles: dict[str, str | int], says: str, is_silent_of: str
 ) -> None:
-    text = " ".join(symobs.state_feedback(integrators(2), poles=poles).to("text").split())
+    text = text_of(symobs.state_feedback(integrators(2), poles=poles))
     assert says in text
     assert is_silent_of not in text
 

@@ -9,6 +9,7 @@ import pytest
 import sympy
 
 import symobs
+from tests.kit import text_of
 
 FEW = symobs.StateSpace("[-2 1 0; 0 1 2; 0 0 0]", "[0; 1; -1]", "[0 -1 2]", dt=True)
 
@@ -22,7 +23,7 @@ def test_two_steps_do_not_reach_three_states() -> None:
     found = symobs.gramian(FEW, of="controllability", horizon="2")
     assert (found.rank, found.determinant) == (2, 0)
     assert [tuple(v) for v in found.kernel] == [(1, 1, 1)]
-    page = " ".join(found.to("text").split())
+    page = text_of(found)
     assert "orthogonal to its kernel" in page
     assert "every state is reachable" not in page
     assert "every state is reachable in these steps" in " ".join(

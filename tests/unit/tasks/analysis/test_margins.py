@@ -12,8 +12,7 @@ import pytest
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
-
-SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+from tests.kit import SERVO
 
 
 @pytest.mark.parametrize("observer", ["full", "minimal"])

@@ -25,7 +25,7 @@ from symobs.proof.derivation import CaseStep, Given
 from symobs.tasks.analysis.rank import rank_test as missing_measurements
 from symobs.tasks.analysis.rank.rank_test import RankResult
 from symobs.tasks.analysis.strata.loci import Locus, Region, loci, maximal
-from tests.kit import tabled, tables
+from tests.kit import tabled, tables, text_of
 from tests.support.algebra import (
     has_sign,
     matrix_at,
@@ -212,7 +212,7 @@ def test_what_cannot_be_written_down_is_undecided() -> None:
     found: Any = symobs.observability(generic(5))
     assert (found.verdict, found.fields["rank"], found.fields["determinant"]) == ("undecided", 5, None)
     assert found.holds_where == ()
-    assert "too long to display" in " ".join(found.to("text").split())
+    assert "too long to display" in text_of(found)
 
 
 # -- loci -----------------------------------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ import sympy
 import symobs
 from symobs.ground.errors import InputError, ProblemErrors
 from symobs.problem import read
+from tests.kit import text_of
 
 T, t = sympy.symbols("T t")
 
@@ -98,6 +99,6 @@ def test_the_covariance_may_end_at_a_horizon_called_t(data: dict[str, str]) -> N
     assert called.covariance == usual.covariance.subs(T, t)
     assert called.output_part == sympy.Matrix([[4 / t, -6 / t**2], [-6 / t**2, 12 / t**3]]).as_immutable()
     assert [None if each is None else each.replace("t", "T") for each in called.best_horizon] == usual.best_horizon
-    told, plain = (" ".join(each.to("text").split()) for each in (called, usual))
+    told, plain = (text_of(each) for each in (called, usual))
     assert "called t in the question, is therefore written T" in told
     assert "is written T" not in plain

@@ -15,6 +15,7 @@ from symobs import StateSpace
 from symobs.formula.figures import TimeResponse
 from symobs.ground.errors import CertificateRejected, InputError, ShapeMismatch
 from symobs.proof.derivation.steps import Plot
+from tests.kit import text_of
 
 t, a, c = sympy.symbols("t a c")
 INPUTS: dict[str, Any] = {
@@ -84,7 +85,7 @@ def test_what_is_in_resonance_is_a_case() -> None:
     (case,) = found.cases
     assert case.when == (sympy.Eq(a - c, 0),)
     assert sympy.simplify(case.result.state[0].subs(a, c) - t * sympy.exp(-c * t)) == 0
-    page = " ".join(found.to("text").split())
+    page = text_of(found)
     assert "Case a = c." in page
     assert "t exp(-c t)" in page
 

@@ -16,7 +16,7 @@ from symobs.ground.errors import CertificateRejected, InputError
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.regions.region import LineRegion, PlaneRegion, RegionInequality, plane_region, short_list
 from symobs.stability.regions.region_check import is_region
-from tests.kit import scalar, tabled
+from tests.kit import scalar, tabled, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -105,7 +105,7 @@ def test_a_moved_boundary_is_told_where_nothing_is_open(dt: Any, limit: Any, sai
     plant = symobs.StateSpace("[0 1; -1/8 1/2]" if dt else "[0 1; -2 -3]", dt=dt)
     found = symobs.stability_region(plant, **limit)
     assert found.verdict == "yes"
-    assert said in " ".join(found.to("text").split())
+    assert said in text_of(found)
 
 
 @pytest.mark.parametrize("sign", ["positive", "negative", "nonzero"])
@@ -159,7 +159,7 @@ def test_roots_are_not_drawn_where_a_denominator_vanishes(text: str, sign: str, 
 
 def test_a_case_in_which_inequalities_contradict_each_other_is_told_to_be_empty() -> None:
     plant = symobs.StateSpace("[a 0 a; a 1/2 -1; -1 -b 1/10]", symbols={"a": "real", "b": "nonzero"})
-    page = " ".join(symobs.stability_region(plant).to("text").split())
+    page = text_of(symobs.stability_region(plant))
     assert "Case b > 0. The stability region is empty. Case b < 0. All roots are stable if and only if" in page
 
     def is_stable(
@@ -190,6 +190,6 @@ def test_an_interval_that_begins_at_the_declared_sign_is_printed() -> None:
 
 def test_a_parameter_in_the_numerator_alone_says_how_the_loop_is_asked_for() -> None:
     found = symobs.stability_region(symobs.StateSpace.from_transfer_function("K/(s*(s+1)*(s+2))"), parameters="K")
-    page = " ".join(found.to("text").split())
+    page = text_of(found)
     assert "The loop with unity feedback is asked for by polynomial = s**3 + 3*s**2 + 2*s + K." in page
     assert symobs.stability_region("s**3 + 3*s**2 + 2*s + K", parameters="K").stable_if == ["K > 0", "K < 6"]

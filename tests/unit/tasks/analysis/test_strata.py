@@ -16,7 +16,7 @@ import symobs
 from symobs.exact import Scalar
 from symobs.exact import ideals as ideal
 from symobs.pages.formats.json import result_object
-from tests.kit import tabled
+from tests.kit import tabled, text_of
 
 pytestmark = pytest.mark.slow
 
@@ -192,7 +192,7 @@ def test_a_rank_that_drops_at_a_point_of_a_curve_is_said_outside_it() -> None:
     plant = symobs.StateSpace("[0 1; 0 0]", None, "[a 0; b 0]").restricted(
         [Scalar.symbol("b") ** 2 - Scalar.symbol("a") ** 3]
     )
-    page = " ".join(symobs.observability(plant).to("text").split())
+    page = text_of(symobs.observability(plant))
     assert "Here we consider the case a³ = b²." in page
     assert "What follows holds for a ≠ 0. Since rank 𝒪 = 2" in page
 

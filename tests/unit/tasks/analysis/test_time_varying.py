@@ -19,7 +19,7 @@ from symobs.exact import Scalar, antiderivative, derivative
 from symobs.formula.expression import parse_scalar
 from symobs.ground.errors import BudgetExceeded, CertificateRejected, DerivationRejected, InputError
 from symobs.tasks.result import tasks
-from tests.kit import tabled, tables
+from tests.kit import tabled, tables, text_of
 from tests.support.problems.problems_by_hand import is_zero
 from tests.support.sampling import FULL
 from tests.support.second_reader import sympy_scalar
@@ -244,7 +244,7 @@ def test_a_rank_on_a_stratum_is_said_outside_its_own_cases() -> None:
     (case,) = found.cases
     (inner,) = case.result.cases  # there (-31, -18, 80), which both outputs do not show, is an eigenvector of A
     assert (inner.result.rank, inner.result.kernel) == (2, ((-31, -18, 80),))
-    page = " ".join(found.to("text").split())
+    page = text_of(found)
     assert "≠ 0. In this case rank 𝒪 = 3 for almost all t." in page
 
 

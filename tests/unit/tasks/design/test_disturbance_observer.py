@@ -10,7 +10,7 @@ import sympy
 import symobs
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
-from tests.kit import tabled
+from tests.kit import tabled, text_of
 
 if TYPE_CHECKING:
     from symobs.tasks.design.disturbance.disturbance_observer import DisturbanceObserver
@@ -24,7 +24,7 @@ def test_a_zero_at_an_eigenvalue_of_the_exosystem_is_a_case_and_a_reason() -> No
     assert sympy.Ne(c, 0) in found.conditions
     verdicts = {case.when: case.result.verdict for case in found.cases}
     assert verdicts == {(sympy.Eq(c, 0),): "no", (sympy.Eq(c - 1, 0),): "no", (sympy.Eq(c - 2, 0),): "no"}
-    text = " ".join(found.to("text").split())
+    text = text_of(found)
     assert "The plant has a zero at the origin from the disturbance to the output" in text
     assert found.at(c=0).verdict == "no"
     assert found.at(c=3).fixed_modes == ()
@@ -34,7 +34,7 @@ def test_modes_that_cannot_be_moved_may_be_desired() -> None:
     plant = symobs.StateSpace("[0 1; -2 -3]", C="[1 1]")  # the mode -1 is not observable
     found = symobs.disturbance_observer(plant, E="[0; 1]", poles="-1, -4, -5")
     assert (found.verdict, found.fixed_modes) == ("yes", (-1,))
-    assert "but it is among the desired poles" in " ".join(found.to("text").split())
+    assert "but it is among the desired poles" in text_of(found)
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_a_page_says_observable_where_the_gain_has_no_need_of_it() -> None:
     A = sympy.Matrix([[1 + a, -a, 1 + a, 0], [0, -1, 2, 1], [1, 0, 0, a], [0, 0, 0, 0]])
     rows = [sympy.Matrix([[a * b, b, a, 0]]) * A**k for k in range(4)]
     assert sympy.rem(sympy.Matrix.vstack(*rows).det(), a**3 * b + a**3 + a**2 * b + 2 * a**2 + 3 * a * b + b, b) == 0
-    assert "a³ b + a³ + a² b + 2a² + 3a b + b ≠ 0" in " ".join(result.to("text").split())
+    assert "a³ b + a³ + a² b + 2a² + 3a b + b ≠ 0" in text_of(result)
 
 
 def test_more_disturbances_than_outputs_are_told_without_a_zero() -> None:

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 import symobs
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Conclude, Section
-from tests.kit import tabled
+from tests.kit import tabled, text_of
 from tests.programs.campaign.points import answer_at
 from tests.support.algebra import evaluated as value
 from tests.support.problems.strategies import unimodular
@@ -108,13 +108,13 @@ def test_a_mode_that_the_input_does_not_move_may_grow() -> None:
     # The page called the whole characteristic polynomial stable, which its own check refused.
     found = symobs.gramian(symobs.StateSpace("[1 0; 0 -2]", "[0; 1]"), horizon="inf", of="controllability")
     assert str(found.fields["matrix"]) == "[0 0; 0 1/4]"
-    assert "since all controllable modes decay" in " ".join(found.to("text").split())
+    assert "since all controllable modes decay" in text_of(found)
 
 
 def test_a_rank_that_drops_somewhere_is_told_in_general() -> None:
     plant = symobs.StateSpace("[-1 0; 0 -2]", None, "[a 0]")
     found = symobs.observability(plant)
-    page = " ".join(found.to("text").split())
+    page = text_of(found)
     assert "For generic parameter values rank 𝒪 = 1 < 2, and for no values is it larger" in page
     assert "Case a ≠ 0. The pair becomes observable if state 2 is also measured." in page
     everywhere = symobs.observability(symobs.StateSpace("[-1 0; 0 -2]", None, "[a^2+1 0]"))

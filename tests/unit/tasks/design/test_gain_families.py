@@ -16,7 +16,7 @@ from sympy import Matrix, Rational
 
 import symobs
 from symobs.ground.errors import CertificateRejected, InputError
-from tests.kit import tabled
+from tests.kit import tabled, text_of
 from tests.support.algebra import (
     characteristic,
     matrix_at,
@@ -194,10 +194,10 @@ def test_a_decoupled_gain_that_lies_in_no_chart_is_written() -> None:
     plant = symobs.StateSpace("[0 0; 0 0]", C="[1 0; 0 1]")
     found = symobs.observer(plant, poles=[-1, -1], member="decoupled")
     assert sympy.eye(2) == found.L
-    words = " ".join(str(found.to("text")).split())
+    words = text_of(found)
     assert "The output errors are decoupled, each satisfying an equation of its own, by the gain" in words
     back = symobs.state_feedback(symobs.StateSpace("[0 0; 0 0]", "[1 0; 0 1]"), poles=[-1, -1], member="decoupled")
-    words = " ".join(str(back.to("text")).split())
+    words = text_of(back)
     assert "The inputs are decoupled, each driving a separate subsystem, by the gain" in words
 
 

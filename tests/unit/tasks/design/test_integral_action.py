@@ -13,7 +13,7 @@ import sympy
 import symobs
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, DerivationRejected
-from tests.kit import tabled
+from tests.kit import SERVO, tabled, text_of
 
 if TYPE_CHECKING:
     from symobs.tasks.design.reference.integral_action import IntegralAction
@@ -45,7 +45,7 @@ def test_poles_dc_gain_and_existence_are_those_of_other_systems(seed: int) -> No
     controllable = np.linalg.matrix_rank(control.ctrb(A, B)) == n
     assert (found.verdict == "yes") == (full and controllable)
     if found.K is None:
-        assert "no gains exist" in " ".join(found.to("text").split())
+        assert "no gains exist" in text_of(found)
         return
     K, k_I = (np.array(gain, dtype=float) for gain in (found.K, found.k_I))
     closed = np.block([[A - B @ K, B @ k_I], [D @ K - C, own - D @ k_I]])
@@ -60,7 +60,7 @@ def test_outputs_that_cannot_follow_are_a_no_even_with_the_fixed_pole_desired(A:
     """The plant has a zero at the origin (at 1): k_I would be 0 and ξ grow without bound for r ≠ 0."""
     found = symobs.integral_action(symobs.StateSpace(A, "[0; 1]", C, dt=dt), poles=f"{int(dt)}, -1/2, 0")
     assert (found.verdict, found.K, found.k_I, found.solvable) == ("no", None, None, False)
-    page = " ".join(found.to("text").split())
+    page = text_of(found)
     assert "cannot follow arbitrary constant references" in page
     assert "as required" not in page
 
@@ -80,14 +80,12 @@ def test_a_zero_at_the_origin_is_a_case_with_its_proof() -> None:
     ("name", "value"), [("K", Matrix.row([11, 6])), ("k_I", Matrix.row([7])), ("w", Matrix.row([1, 0, 0]))]
 )
 def test_a_wrong_answer_is_rejected(name: str, value: Matrix) -> None:
-    design: IntegralAction = symobs.integral_action(
-        symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles="-1, -2, -3"
-    )
+    design: IntegralAction = symobs.integral_action(SERVO, poles="-1, -2, -3")
     with pytest.raises((CertificateRejected, DerivationRejected)):
         design.with_answer(name, value)
 
 
 @tabled
 def test_the_error_at_rest_is_no_matter_of_stability_that_was_shown(poles: str, said: str) -> None:
-    found = symobs.integral_action(symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]"), poles=poles)
+    found = symobs.integral_action(SERVO, poles=poles)
     assert said in found.to("latex")

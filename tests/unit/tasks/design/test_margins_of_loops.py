@@ -11,10 +11,9 @@ from scipy.optimize import minimize_scalar  # type: ignore[import-untyped]
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
+from tests.kit import SERVO
 from tests.support.algebra import seeded
 from tests.support.sampling import seeds
-
-SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 
 
 def drawn(seed: int) -> tuple[Any, Any, Any, bool]:

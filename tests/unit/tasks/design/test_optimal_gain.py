@@ -30,7 +30,7 @@ from tests.support.algebra import seeded
 from tests.support.paths import ROOT
 from tests.support.sampling import seeds
 
-PROBLEMS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))["problem"]
+PROBLEMS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))["problem"]
 
 
 #: Seeds of plants for which SciPy has eight or nine right digits.
@@ -301,7 +301,7 @@ def test_a_mode_that_may_lie_on_the_boundary_is_left_open() -> None:
 
 
 def test_decimals_answer_where_there_is_no_closed_form() -> None:
-    problem = (ROOT / "worked_examples" / "lqr_third_order.toml").read_text(encoding="utf-8")
+    problem = (ROOT / "worked_examples" / "lqr_third_order.toml").read_text("utf-8")
     given = {"K = [0.0143 0.1107 0.0676]": "right", "K = [0.0143 0.1108 0.0676]": "wrong", "K = [1 1 1]": "wrong"}
     assert {answer: symobs.check(problem, answer).verdict for answer in given} == given
 

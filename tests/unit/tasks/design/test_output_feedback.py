@@ -12,7 +12,7 @@ import symobs
 from symobs import StateSpace
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
-from tests.kit import tabled
+from tests.kit import SERVO, tabled, text_of
 from tests.support.algebra import (
     at_number,
     characteristic,
@@ -154,7 +154,6 @@ def test_the_ill_posed_loop_is_refused_with_its_reason() -> None:
         found.with_answer("F", symobs.compensator(SERVO, **ASKED).answer["F"])
 
 
-SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 ASKED: dict[str, Any] = {"control_poles": [-2, -2], "observer_poles": [-10], "observer": "minimal"}
 
 
@@ -164,7 +163,7 @@ def test_of_many_gains_one_that_leaves_the_law_unsolved_rules_out_no_other() -> 
     asked: dict[str, Any] = {"control_poles": [-1, -2, -3], "observer_poles": [-4, -5], "observer": "minimal"}
     found = symobs.compensator(plant, **asked)
     assert (found.verdict, found.answer["F"]) == ("undecided", None)
-    assert "Other gains with the same poles were not tried" in " ".join(found.to("text").split())
+    assert "Other gains with the same poles were not tried" in text_of(found)
     zero = "[0 0 0; 0 0 0; 0 0 0]"
     assert symobs.feedforward(plant, **asked).verdict == "undecided"
     assert symobs.tracking(plant, **asked, reference_matrix=zero).verdict == "undecided"
@@ -242,7 +241,7 @@ def test_a_compensator_whose_stability_is_undecided_has_a_page_that_is_silent_ab
     )
     design = symobs.compensator(plant, control_poles="-p, -p, -p", observer_poles="-10, -6, -8")
     assert design.F_stable == "undecided"
-    text = " ".join(design.to("text").split())
+    text = text_of(design)
     assert "It is strictly proper. 4." in text
     assert "if and only if ." not in text
 
@@ -341,7 +340,7 @@ def test_the_feedforward_of_a_state_says_where_the_dc_gain_vanishes() -> None:
 
 
 def test_a_feedforward_has_control_poles_or_a_gain() -> None:
-    plant = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    plant = SERVO
     with pytest.raises(InputError, match="control_poles are missing"):
         symobs.feedforward(plant)
     with pytest.raises(InputError, match="both K and control_poles"):

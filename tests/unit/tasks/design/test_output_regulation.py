@@ -10,6 +10,7 @@ from scipy.linalg import expm  # type: ignore[import-untyped]
 
 import symobs
 from symobs.ground.errors import InputError, ShapeMismatch
+from tests.kit import SERVO
 from tests.support.algebra import seeded
 from tests.support.sampling import seeds
 
@@ -73,7 +74,7 @@ def test_solutions_are_those_of_the_linear_equations(seed: int) -> None:
 
 
 def test_the_compensator_follows_in_simulation() -> None:
-    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    plant = SERVO
     S, E = "[0 2; -2 0]", "[0 0; 1 0]"
     design: Any = symobs.output_regulation(
         plant, S=S, reference="[1 0]", E=E, poles="-2, -3", observer_poles="-2, -3, -4, -5"
@@ -101,7 +102,7 @@ def test_a_parameter_says_where_a_zero_blocks() -> None:
 
 
 def test_an_exosystem_that_the_output_does_not_show_has_no_observer() -> None:
-    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    plant = SERVO
     asked = {"S": "[0 2; -2 0]", "reference": "[1 0]", "poles": "-2, -3"}
     found: Any = symobs.output_regulation(plant, **asked, observer_poles="-1, -2, -3, -4")
     assert (found.verdict, found.solvable, found.L) == ("no", True, None)
@@ -109,7 +110,7 @@ def test_an_exosystem_that_the_output_does_not_show_has_no_observer() -> None:
 
 
 def test_what_does_not_fit_is_refused() -> None:
-    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    plant = SERVO
     with pytest.raises(InputError, match="S is missing"):
         symobs.output_regulation(plant, reference="[1 0]", poles="-1, -2")
     with pytest.raises(InputError, match="reference is missing"):

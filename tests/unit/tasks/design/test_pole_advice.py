@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 import symobs
 from symobs.exact import Factored, Scalar
 from symobs.ground.errors import CertificateRejected, InputError
-from tests.kit import tabled
+from tests.kit import tabled, text_of
 from tests.support.algebra import has_sign
 from tests.support.claims.claims import Setting, applicable
 from tests.support.claims.claims_of_advice import advice_holds, numerator
@@ -87,7 +87,7 @@ def test_a_pair_overshoots_by_no_more_and_little_less(time: Fraction, overshoot:
 def test_one_pole_has_no_overshoot() -> None:
     result = advice("1/(s - 1)", settling_time=2, overshoot="0.05")
     assert (result.poles, result.omega_d) == ((-2,), None)
-    assert "a real pole gives no overshoot" in " ".join(result.to("text").split())
+    assert "a real pole gives no overshoot" in text_of(result)
 
 
 def test_zeros_slower_than_the_settling_time_are_not_used() -> None:
@@ -103,7 +103,7 @@ def test_zeros_slower_than_the_settling_time_are_not_used() -> None:
 def test_warnings(transfer_function: str, words: str) -> None:
     result = advice(transfer_function, radius=100 if "exceeds" in words else 3)
     assert any(words in warning for warning in result.warnings)
-    page = " ".join(result.to("text").split())
+    page = text_of(result)
     assert page.count("Remark.") == len(result.warnings)
 
 

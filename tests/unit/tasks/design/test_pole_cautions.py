@@ -7,13 +7,9 @@ from typing import Any
 import pytest
 
 import symobs
-from tests.kit import tabled
+from tests.kit import tabled, text_of
 
 SERVO = ("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-
-
-def page(result: Any) -> str:
-    return " ".join(result.to("text").split())
 
 
 def plant(dt: int = 0) -> symobs.StateSpace:
@@ -22,14 +18,14 @@ def plant(dt: int = 0) -> symobs.StateSpace:
 
 @tabled
 def test_observers_of_full_order(dt: int, poles: str, words: str) -> None:
-    found = page(symobs.observer(plant(dt), poles=poles))
+    found = text_of(symobs.observer(plant(dt), poles=poles))
     assert ("Remark." in found) == bool(words)
     assert words in found
 
 
 @tabled
 def test_observers_of_reduced_order(pole: str, words: str) -> None:
-    found = page(symobs.reduced_order_observer(plant(), poles=pole))
+    found = text_of(symobs.reduced_order_observer(plant(), poles=pole))
     assert ("Remark." in found) == bool(words)
     assert words in found
 
@@ -55,7 +51,7 @@ TASKS: list[tuple[str, dict[str, Any]]] = [
 def test_every_task_with_both_gains(
     task: str, further: dict[str, Any], control: str, observer: str, words: list[str]
 ) -> None:
-    found = page(getattr(symobs, task)(plant(), control_poles=control, observer_poles=observer, **further))
+    found = text_of(getattr(symobs, task)(plant(), control_poles=control, observer_poles=observer, **further))
     assert found.count("Remark.") - found.count("The compensator itself") == len(words)
     assert all(said in found for said in words)
 
@@ -66,6 +62,6 @@ def test_a_mode_that_F_does_not_show_is_told(
 ) -> None:
     design = symobs.compensator(symobs.StateSpace(*matrices), control_poles=control, observer_poles=observer)
     assert (design.F_stable, design.compensator_stable) == ("yes", stable)
-    found = " ".join(page(design).split())
+    found = text_of(design)
     assert ("is not a complete description of the compensator" in found) == bool(words)
     assert words in found

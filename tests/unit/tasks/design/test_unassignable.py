@@ -11,13 +11,10 @@ import symobs
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import CaseStep
 from symobs.proof.derivation.steps import Section
+from tests.kit import text_of
 
 if TYPE_CHECKING:
     from symobs.proof.derivation import Derivation, Step
-
-
-def text_of(result: Any) -> str:
-    return " ".join(result.to("text").split())
 
 
 def solved(task: str, A: str, *, B: str | None = None, C: str | None = None, **asked: Any) -> Any:

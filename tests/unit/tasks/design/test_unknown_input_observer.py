@@ -11,7 +11,7 @@ import sympy
 import symobs
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
-from tests.kit import scalars, tabled
+from tests.kit import scalars, tabled, text_of
 
 if TYPE_CHECKING:
     from symobs.tasks.design.disturbance.unknown_input_observer import UnknownInputObserver
@@ -75,7 +75,7 @@ def test_conditions_and_cases_are_those_of_the_rank_and_of_the_zeros() -> None:
 def test_why_there_is_no_observer_is_said(C: str, poles: str, said: str) -> None:
     found = symobs.unknown_input_observer(symobs.StateSpace("[0 1; -2 -3]", C=C), E="[0; 1]", poles=poles)
     assert found.verdict == "no"
-    assert said in " ".join(found.to("text").split())
+    assert said in text_of(found)
 
 
 @tabled
@@ -105,7 +105,7 @@ def test_many_special_cases_are_the_rows_of_one_table() -> None:
     """C E = (a, b): the zeros at b = 0 are -1/a; H, T and A₁ stand on the page once, in general."""
     plant = symobs.StateSpace("[-1 1 0; -a 0 0; 0 -b -1]", "[0; 1; 0]", "[1 0 0; 0 0 1]")
     found = symobs.unknown_input_observer(plant, E="[a; 1; b]", poles="-2, -3, -4")
-    page = " ".join(found.to("text").split())
+    page = text_of(found)
     assert page.count("A₁ = T A") == page.count("H = E") == page.count("Such an observer requires") == 1
     table = page[page.index("Special cases") : page.index("References")]
     for row in (

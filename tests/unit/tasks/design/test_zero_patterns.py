@@ -21,6 +21,7 @@ from symobs.ground.errors import CertificateRejected
 from symobs.tasks.design.gain.gain_kind import AlgebraicGain, NoGainWithZeros
 from symobs.tasks.design.pole_placement import zero_pattern
 from symobs.tasks.result.output_methods import to_sympy
+from tests.kit import text_of
 
 s, x = sympy.Symbol("s"), sympy.Symbol("x")
 
@@ -126,7 +127,7 @@ def test_a_pattern_that_one_parameter_value_allows() -> None:
     there = sympy.expand(placed(plant.A.subs(b, 2), plant.C, case.result.L) - desired([-4, -1]))
     assert sympy.simplify(there) == 0
     assert case.result.cases[0].result.verdict == "no"
-    page = " ".join(found.to("text").split())
+    page = text_of(found)
     assert "have a common solution only if b - 2 vanishes" in page
     assert "Here we assume a ≠ 0" in page
 
@@ -174,7 +175,7 @@ def test_a_pattern_may_have_no_gain_where_the_other_input_is_not_enough() -> Non
     (case,) = found.cases
     assert (case.result.verdict, case.result.K) == ("no", None)
     assert plant.A.subs(sympy.Symbol("a"), -4) * plant.B.col(1) == sympy.zeros(2, 1)
-    assert "In this case no such gain exists." in " ".join(found.to("text").split())
+    assert "In this case no such gain exists." in text_of(found)
 
 
 def test_a_pattern_that_is_too_much_work_is_undecided(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -190,7 +191,7 @@ def test_a_pattern_that_is_too_much_work_is_undecided(monkeypatch: pytest.Monkey
     monkeypatch.setattr(triangular_basis, "triangular", too_large)
     monkeypatch.setattr(zero_pattern, "Ideal", SimpleNamespace(of=too_large))
     assert (found().needed, found().verdict) == (None, "undecided")
-    assert "whether one exists is undecided" in " ".join(found().to("text").split())
+    assert "whether one exists is undecided" in text_of(found())
 
 
 SCIPY_6692 = "[0 0 0 1; -42.7207306947135 0 0 0; 0 0 0 0; 47.0334901743703 0 0 0]"

@@ -26,7 +26,7 @@ LARGE = {"cart_pole", "pendulum_on_cart"}
 
 def with_letters() -> list[str]:
     files = sorted((ROOT / "worked_examples").glob("*.toml"))
-    return [f.stem for f in files if "[symbols]" in f.read_text(encoding="utf-8") and f.stem not in LARGE]
+    return [f.stem for f in files if "[symbols]" in f.read_text("utf-8") and f.stem not in LARGE]
 
 
 def drawn(result: Result, chosen: random.Random) -> dict[str, Fraction]:
@@ -40,7 +40,7 @@ def drawn(result: Result, chosen: random.Random) -> dict[str, Fraction]:
 @pytest.mark.parametrize("name", with_letters())
 def test_gains_of_worked_examples_have_the_values_that_sympy_finds(name: str) -> None:
     path = ROOT / "worked_examples" / f"{name}.toml"
-    for result in read(path.read_text(encoding="utf-8"), name, path.parent).solve():
+    for result in read(path.read_text("utf-8"), name, path.parent).solve():
         if result.task not in {"observer", "state_feedback", "compensator", "reduced_order_observer"}:
             continue
         values = drawn(result, random.Random(name))  # noqa: S311 - a seeded draw

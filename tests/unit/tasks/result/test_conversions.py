@@ -12,6 +12,7 @@ import symobs
 from symobs.exact import Scalar
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.ground.errors import UsageError
+from tests.kit import SERVO
 
 NAMES = ["a", "b", "x_1", "zeta", "A", "s"]
 
@@ -62,7 +63,7 @@ def test_what_is_shown_of_a_large_answer_is_short() -> None:
 
 
 def test_json_says_an_answer_once() -> None:
-    plant = symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
+    plant = SERVO
     design = symobs.observer(plant, poles=[-10, -10])
     assert json.loads(design.to_json())["results"][0]["in_convention"] == {"name": "standard"}
     other = json.loads(str(design.to("json", convention="plusK-plusMC")))["results"][0]["in_convention"]

@@ -95,7 +95,7 @@ def packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         package, module = name.split(".")
         (tmp_path / package).mkdir(exist_ok=True)
         (tmp_path / package / "__init__.py").touch()
-        (tmp_path / package / f"{module}.py").write_text(text, encoding="utf-8")
+        (tmp_path / package / f"{module}.py").write_text(text, "utf-8")
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(symobs, "TASK_PACKAGES", ("tasks_of_one", "tasks_of_two"))
     monkeypatch.setattr(symobs, "FORMAT_PACKAGE", "formats_of_three")

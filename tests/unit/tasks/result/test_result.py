@@ -23,14 +23,13 @@ from symobs.tasks.result import (
     tasks,
     writers,
 )
+from tests.kit import SERVO
 from tests.support.problems.steps import A, F, said
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from symobs.proof.derivation.builder import Builder
-
-SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 
 
 class Squared(Result):

@@ -24,7 +24,7 @@ def faults(line: Line, step: Plot) -> list[str]:
     ("stem", "kind"), [("region_third_order_loop", RegionPicture), ("region_discrete_one_gain", PoleMap)]
 )
 def test_what_is_kept_is_what_is_found(stem: str, kind: type) -> None:
-    results = read((EXAMPLES / f"{stem}.toml").read_text(encoding="utf-8")).solve()
+    results = read((EXAMPLES / f"{stem}.toml").read_text("utf-8")).solve()
     lines = [line for result in results for line in lines_of(result.derivation)]
     plots = [(line, line.step) for line in lines if isinstance(line.step, Plot)]
     ((line, plot),) = ((line, step) for line, step in plots if isinstance(step.picture, kind))

@@ -128,7 +128,7 @@ def test_poles_that_never_part_are_drawn_twice() -> None:
 def drawn_regions() -> Iterator[PlaneRegion]:
     """Yield the regions of the worked examples, of a loop with PI control, and of cubic polynomials."""
     for name, path in NAMES.items():
-        if "stability_region" in path.read_text(encoding="utf-8"):
+        if "stability_region" in path.read_text("utf-8"):
             yield from (found for result in results_of(name) if isinstance(found := result.region, PlaneRegion))
     x, y = Scalar.symbol("x"), Scalar.symbol("y")
     several = [s**3 + n * s**2 + (x * (7 * n % 90) + 9 - n) * s + y - x**2 for n in range(1, 9)]

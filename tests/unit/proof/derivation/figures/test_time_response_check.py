@@ -18,7 +18,7 @@ from symobs.formula.tree import Exact, Literal, evaluate
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Plot
 from symobs.system import StateSpace
-from tests.kit import tabled
+from tests.kit import SERVO, tabled, text_of
 from tests.support.derivations import untrue_responses
 from tests.support.tampering.mutations import lines_of
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from symobs.tasks.result import Result
     from tests.support.tampering.mutations import Line
 
-SERVO = StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 PAGES: dict[str, Callable[[], Result]] = {
     "observer": lambda: symobs.observer(SERVO, poles=[-10, -10]),
     "oscillating": lambda: symobs.observer(SERVO, poles="-1+2i, -1-2i"),
@@ -87,7 +86,7 @@ def test_a_deadbeat_observer_is_dead_after_as_many_instants_as_states() -> None:
     ((_, picture),) = plots(PAGES["deadbeat"]())
     assert picture.discrete
     assert [[y for _, y in picture.points(course)] for course in picture.responses] == [[1, 0, 0, 0, 0, 0]] * 2
-    assert "instants 0, 1, 2" in " ".join(str(PAGES["deadbeat"]().to("text")).split())
+    assert "instants 0, 1, 2" in text_of(PAGES["deadbeat"]())
 
 
 def test_a_spoiled_value_of_discrete_time_is_refused_however_near() -> None:
