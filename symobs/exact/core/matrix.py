@@ -10,7 +10,7 @@ import itertools
 from fractions import Fraction
 from functools import cached_property, lru_cache, reduce
 from math import gcd, lcm
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from flint import fmpq_mat, fmpz, fmpz_mat, fmpz_mpoly
 
@@ -433,8 +433,11 @@ def horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> Ma
 
 
 def whole_product(left: Sequence[Sequence[int]], right: Sequence[Sequence[int]]) -> list[list[int]]:
-    """Return the product of two matrices of whole numbers, given by their rows."""
-    return [list(map(int, row)) for row in (fmpz_mat(left) * fmpz_mat(right)).tolist()]
+    """Return the product of two matrices of whole numbers, given by their rows.
+
+    Its entries stay numbers of the kernel, which reckon as Python's do: to turn one into the other takes longer than the product.
+    """
+    return cast("list[list[int]]", (fmpz_mat(left) * fmpz_mat(right)).tolist())
 
 
 def measures(numbers: Sequence[Fraction], bound: int) -> dict[Fraction, list[tuple[Fraction, int]]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from copy import copy
 from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -80,11 +79,15 @@ class LatexPrinter(Printer[LatexBox]):
         paged: bool = True,
     ) -> None:
         """Print as `Printer` does, in lines of `width` em; `paged` lets TeX break long displays over pages."""
+        self.running = self.in_exponent = False
         super().__init__(variable, symbols, discrete=discrete)
         self.width = width
         self.paged = paged
-        self.running = False
-        self.in_exponent = False
+
+    @property
+    def style(self) -> tuple[object, ...]:
+        """What changes between one formula of a page and the next."""
+        return *super().style, self.running, self.in_exponent
 
     def inline(self, item: Formula | Relation) -> str:
         """Return mathematics for a line of text, without delimiters; TeX can break it wherever it is long."""
@@ -92,8 +95,7 @@ class LatexPrinter(Printer[LatexBox]):
 
     def running_box(self, item: Formula | Relation) -> LatexBox:
         """Return mathematics for a line of text with its width and height."""
-        running = copy(self)
-        running.running, running.known = True, {}
+        running = self.styled(running=True)
         return running.relation(item) if isinstance(item, Relation) else running.typeset(item)
 
     def unbroken(self, item: Formula | Relation) -> str:
@@ -255,9 +257,7 @@ class LatexPrinter(Printer[LatexBox]):
 
     def exponential(self, argument: Scalar) -> LatexBox:
         r"""Return `e^{-t/2}`: fractions in the exponent are written with a slash."""
-        script = copy(self)
-        script.in_exponent, script.known = True, {}
-        exponent = script.scalar(argument)
+        exponent = self.styled(in_exponent=True).scalar(argument)
         return LatexBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, f"e^{{{exponent.source}}}")
 
     def root(self, argument: LatexBox, degree: int = 2) -> LatexBox:

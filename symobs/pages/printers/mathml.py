@@ -7,7 +7,6 @@ A long formula in running text is several `math` elements, between which a brows
 from __future__ import annotations
 
 import re
-from copy import copy
 from typing import TYPE_CHECKING
 
 from symobs.formula.notation import symbol_latex
@@ -115,10 +114,14 @@ class MathmlPrinter(Printer[MathmlBox]):
         width: float = widths.TEXT_WIDTH,
     ) -> None:
         """Print as `Printer` does, in lines of `width` em."""
+        self.running = self.in_exponent = False
         super().__init__(variable, symbols, discrete=discrete)
         self.width = width
-        self.running = False
-        self.in_exponent = False
+
+    @property
+    def style(self) -> tuple[object, ...]:
+        """What changes between one formula of a page and the next."""
+        return *super().style, self.running, self.in_exponent
 
     def inline(self, item: Formula | Relation) -> str:
         """Return `math` elements for a line of text."""
@@ -127,8 +130,7 @@ class MathmlPrinter(Printer[MathmlBox]):
 
     def running_box(self, item: Formula | Relation) -> MathmlBox:
         """Return mathematics for a line of text."""
-        running = copy(self)
-        running.running, running.known = True, {}
+        running = self.styled(running=True)
         return running.relation(item) if isinstance(item, Relation) else running.typeset(item)
 
     def unbroken(self, item: Formula | Relation) -> str:
@@ -292,9 +294,7 @@ class MathmlPrinter(Printer[MathmlBox]):
 
     def exponential(self, argument: Scalar) -> MathmlBox:
         """Return the exponential, fractions in its exponent with a slash."""
-        script = copy(self)
-        script.in_exponent, script.known = True, {}
-        exponent = script.scalar(argument)
+        exponent = self.styled(in_exponent=True).scalar(argument)
         element = f"<msup><mi>e</mi>{exponent.one}</msup>"
         return MathmlBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, (element,))
 

@@ -7,8 +7,9 @@ A printed part is a `Box`: what is written, how wide it is, and how tightly it b
 from __future__ import annotations
 
 from abc import abstractmethod
+from copy import copy
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits
 from symobs.exact.algebraic.real_algebraic import RealRoot
@@ -81,7 +82,9 @@ class Printer(FormulaWriter[B]):
         self.letters: Mapping[str, LetterForm] = LETTERS
         self.language: Language = ENGLISH
         self.discrete = discrete
-        self.known: dict[Scalar, B] = {}
+        #: What is printed already, by the style it is printed in; `known` is that of this printer's own style.
+        self.memory: dict[tuple[object, ...], dict[Scalar | Formula, B]] = {}
+        self.known = self.memory.setdefault(self.style, {})
         #: The entries named by stars so far, numbered through the page.
         self.stars: dict[Formula, int] = {}
 
@@ -89,7 +92,19 @@ class Printer(FormulaWriter[B]):
         """Go on with this variable, in continuous or discrete time."""
         if time is not None and time != (self.variable, self.discrete):
             self.variable, self.discrete = time
-            self.known.clear()
+            self.known = self.memory.setdefault(self.style, {})
+
+    @property
+    def style(self) -> tuple[object, ...]:
+        """What changes between one formula of a page and the next."""
+        return self.variable, self.discrete
+
+    def styled(self, **style: bool) -> Self:
+        """Return this printer in another style."""
+        other = copy(self)
+        vars(other).update(style)
+        other.known = self.memory.setdefault(other.style, {})
+        return other
 
     @abstractmethod
     def inline(self, item: Formula | Relation) -> str:
@@ -133,10 +148,16 @@ class Printer(FormulaWriter[B]):
         return self.joined(parts, Level.SUM)
 
     def typeset(self, formula: Formula) -> B:
-        """Print a formula."""
+        """Print a formula; equal ones are printed once."""
+        if isinstance(formula, Literal) and isinstance(formula.value, Scalar):
+            return self.scalar(formula.value)
+        box = self.known.get(formula)
+        if box is None:
+            box = self.known[formula] = self._printed(formula)
+        return box
+
+    def _printed(self, formula: Formula) -> B:
         match formula:
-            case Literal(Scalar() as value):
-                return self.scalar(value)
             case Sum() | Negative():
                 return self.joined(self.sum_parts(formula), Level.SUM)
             case Product():

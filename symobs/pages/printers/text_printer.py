@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import unicodedata
-from copy import copy
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, Self
 
@@ -65,9 +64,9 @@ class TextPrinter(Printer[TextBox]):
         flat: bool = False,
     ) -> None:
         """Print as `Printer` does, in lines of `width` columns; `flat` keeps every matrix on one line."""
+        self.flat = flat
         super().__init__(variable, symbols, discrete=discrete)
         self.width = width
-        self.flat = flat
 
     @classmethod
     def of(cls, other: Printer[Any], *, width: int = 96, flat: bool = False) -> Self:
@@ -76,12 +75,15 @@ class TextPrinter(Printer[TextBox]):
         printer.letters, printer.language = other.letters, other.language
         return printer
 
+    @property
+    def style(self) -> tuple[object, ...]:
+        """What changes between one formula of a page and the next."""
+        return *super().style, self.flat
+
     def inline(self, item: Formula | Relation) -> str:
         """Return mathematics on one line."""
         if not self.flat:
-            flat = copy(self)
-            flat.flat, flat.known = True, {}
-            return flat.inline(item)
+            return self.styled(flat=True).inline(item)
         return (self.relation(item) if isinstance(item, Relation) else self.typeset(item)).line
 
     def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = "") -> str:

@@ -34,7 +34,7 @@ from symobs.formula.tree import (
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.formula.tree.term import Term
 from symobs.ground.errors import DerivationRejected, SymobsWarning
-from symobs.proof.certificate.claims import can_be_shown, verify
+from symobs.proof.certificate.claims import UNREADABLE, can_be_shown, verify
 from symobs.proof.derivation.check import Derivation, after, inside_case, with_domain
 from symobs.proof.derivation.convention_signs import set_apart
 from symobs.proof.derivation.steps import (
@@ -74,7 +74,10 @@ def left_out(what: str) -> None:
 
 
 def without_failing_cases(written: Derivation) -> Derivation:
-    """Return a derivation with the cases whose check fails named as undecided; raises where another step fails."""
+    """Return a derivation without the pictures whose check fails, and with such cases named as undecided.
+
+    Raises where another step fails.
+    """
     steps, _ = _decided(written.steps, written.start, written)
     return replace(written, steps=steps)
 
@@ -86,7 +89,10 @@ def _decided(
     for step in steps:
         try:
             environment, kept = after(step, environment, whole.discrete), step
-        except DerivationRejected:
+        except (DerivationRejected, *UNREADABLE):
+            if isinstance(step, Plot):
+                left_out(f"a picture of kind {type(step.picture).__name__}")
+                continue
             if isinstance(step, Section):
                 inside, environment = _decided(step.steps, environment, whole)
                 kept = replace(step, steps=inside)
@@ -407,16 +413,7 @@ class Builder:
         return table
 
     def plot(self, picture: Picture, subject: Member, say: str = "", **slots: Slot) -> None:
-        """Show where a polynomial is stable, or how its roots move: the picture is held against it.
-
-        One that is not faithful is left out with a `SymobsWarning`.
-        """
-        from symobs.proof.derivation.plot_check import is_faithful  # noqa: PLC0415 - only pages of regions pay for it
-
-        discrete = self.plant.is_discrete
-        if not is_faithful(picture, formula_of(subject), self.environment, discrete=discrete):
-            left_out(f"a picture of kind {type(picture).__name__}")
-            return
+        """Show where a polynomial is stable, or how its roots move; a picture that its check rejects is left out."""
         self.steps.append(Plot(picture, formula_of(subject), sentence(say, slots) if say else None))
 
     @contextmanager

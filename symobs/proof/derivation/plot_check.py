@@ -5,10 +5,9 @@ The points of a picture are rational and lie near what they stand for; how near 
 
 from __future__ import annotations
 
-from collections import deque
 from fractions import Fraction
 from functools import lru_cache
-from itertools import dropwhile, islice, pairwise
+from itertools import chain, dropwhile, islice, pairwise
 from math import comb, lcm
 from operator import mul
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,7 +18,7 @@ from symobs.exact.algebraic.root_location import shifted, value_at
 from symobs.exact.core.matrix import whole_product
 from symobs.formula.figures import LinePicture, PoleMap, RegionPicture, TimeResponse
 from symobs.formula.tree import Block, Derivative, Exact, Letter, Literal, Product, Relation, Signal, evaluate
-from symobs.proof.certificate.claims import EVALUATION_ERRORS, as_scalar, verify
+from symobs.proof.certificate.claims import as_scalar, verify
 from symobs.proof.derivation.facts import polynomial_of
 from symobs.proof.derivation.figures_check import ALLOWS, Stability, faults_of_region, within, written
 
@@ -133,11 +132,6 @@ def _distance(a: Place, b: Place) -> Fraction:
 _NEAR = Fraction(1, 500)
 
 
-#: The last pictures in which nothing was false, and of what: a page asks before it shows one, and again when it is
-#: checked.  A picture cannot be changed, so the same one shows the same; another one of equal parts is looked at anew.
-_FAITHFUL: deque[tuple[Picture, tuple[object, ...]]] = deque(maxlen=4)
-
-
 def relations_of(picture: Picture) -> tuple[Relation, ...]:
     """Return the equations that are written into a picture."""
     return tuple(curve.equation for curve in picture.curves) if isinstance(picture, RegionPicture) else ()
@@ -163,32 +157,15 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
         yield f"the polynomial {polynomial} depends on {', '.join(axes)} alone"
         return
     equations = {relation: _difference(relation, environment, numbers) for relation in relations_of(picture)}
-    of = polynomial, variable, discrete, dict(environment.signs), equations
-    if any(seen is picture and held == of for seen, held in _FAITHFUL):
-        return
-    is_rejected = False
     signs = tuple(environment.signs.get(name, "real") for name in axes)
     test = Stability(polynomial, variable, axes, signs, discrete)
     match picture:
         case RegionPicture():
-            found = faults_of_region(picture, equations, test)
+            yield from faults_of_region(picture, equations, test)
         case LinePicture():
-            found = _of_line(picture, test)
+            yield from _of_line(picture, test)
         case _:
-            found = faults_of_poles(picture, polynomial, variable, discrete=discrete)
-    for fault in found:
-        is_rejected = True
-        yield fault
-    if not is_rejected:
-        _FAITHFUL.append((picture, of))
-
-
-def is_faithful(picture: Picture, subject: Formula, environment: Environment, *, discrete: bool) -> bool:
-    """Return whether nothing that a picture shows is false."""
-    try:
-        return next(faults(picture, subject, environment, discrete=discrete), None) is None
-    except EVALUATION_ERRORS:
-        return False
+            yield from faults_of_poles(picture, polynomial, variable, discrete=discrete)
 
 
 def _axes(picture: RegionPicture | LinePicture) -> tuple[str, ...]:
@@ -276,8 +253,8 @@ def _is_labelled(end: End, near: Fraction, numbers: dict[str, Scalar]) -> bool:
 _OFF, _BETWEEN = Fraction(1, 500), Fraction(1, 100)
 
 
-#: Bits that are left when rounding has done its worst, and those that are kept in turn until they are left.
-_BITS, _KEPT = 64, (256, 512, 1024, 2048, 4096)
+#: The bits of a response, by how much of them rounding at its worst may be wrong, and the bits that are kept until it is not.
+_BITS, _OFF_BY, _KEPT = 72, 1 << 8, (192, 512, 1024, 2048, 4096)
 
 
 #: The series is that of a matrix of norm 2⁻¹⁶ or less, so that each term brings 16 bits.
@@ -313,9 +290,10 @@ def faults_of_response(picture: TimeResponse, subject: Formula, environment: Env
     if not is_slow(matrix, end / (2 * steps)):
         yield "modes that do not turn unseen between two instants"
         return
-    values = _stepped(matrix, beginning, end / (2 * steps), 2 * steps + 1)
-    for response in picture.responses:
-        yield from _faults_of_component(response, picture.parts, values, (bottom, top))
+    rows = tuple(response.row for response in picture.responses)
+    values = _followed(matrix, beginning, rows, end / (2 * steps), 2 * steps + 1)
+    for response, true in zip(picture.responses, values, strict=True):
+        yield from _faults_of_component(response, picture.parts, true, (bottom, top))
 
 
 def _faults_of_samples(picture: TimeResponse, matrix: Matrix, state: tuple[Fraction, ...]) -> Iterator[str]:
@@ -356,18 +334,15 @@ def _size(name: str, environment: Environment) -> int:
 
 
 def _faults_of_component(
-    response: PlottedResponse, parts: int, values: list[list[int]], edges: tuple[Fraction, Fraction]
+    response: PlottedResponse, parts: int, true: list[int], edges: tuple[Fraction, Fraction]
 ) -> Iterator[str]:
-    """Yield the instants at which a response is wrong; `values` are those at all instants and between them."""
-    common = lcm(*(part.denominator for part in response.row))
-    row = [int(part * common) for part in response.row]
-    true = [sum(map(mul, row, value)) // common for value in values]
+    """Yield the instants at which a response is wrong; `true` are its values at all instants and between them."""
     drawn = [(height << _BITS) // parts for height in response.heights]
     bottom, top = (int(edge * (1 << _BITS)) for edge in edges)
     height = top - bottom
     off = [abs(y - value) for y, value in zip(drawn, true[::2], strict=True)]
     between = [abs((a + b) // 2 - value) for (a, b), value in zip(pairwise(drawn), true[1::2], strict=True)]
-    if max(off) > height * _OFF or max(between) > height * _BETWEEN:
+    if int(max(off)) > height * _OFF or int(max(between)) > height * _BETWEEN:
         yield f"the response of {response.signal}"
     if min(drawn) < bottom or max(drawn) > top:
         yield f"{response.signal}, which leaves the window,"
@@ -375,10 +350,13 @@ def _faults_of_component(
 
 def is_slow(matrix: Matrix, step: Fraction) -> bool:
     """Return whether |λ| h ≤ 3 for all eigenvalues λ of M: no |λ|ᵏ is larger than ‖Mᵏ‖, here for k = 64."""
-    power = Matrix.of([[Scalar.of(entry.fraction() * step / _TURN) for entry in row] for row in matrix.rows])
+    table = [[entry.fraction() for entry in row] for row in matrix.rows]
+    common = lcm(*(entry.denominator for row in table for entry in row))
+    power = [[int(entry * common) for entry in row] for row in table]
     for _ in range(_SQUARINGS):
-        power = power @ power
-    return all(sum(abs(entry.fraction()) for entry in row) <= 1 for row in power.rows)
+        power = whole_product(power, power)
+    largest = (common * _TURN / step) ** (1 << _SQUARINGS)
+    return all(int(sum(map(abs, row))) <= largest for row in power)
 
 
 class _Enclosed(NamedTuple):
@@ -394,31 +372,53 @@ class _Enclosed(NamedTuple):
 
     def times(self, other: _Enclosed, bits: int, divisor: int = 1) -> _Enclosed:
         """Return the product by a whole number, each entry rounded down."""
-        rows = [[(entry >> bits) // divisor for entry in row] for row in whole_product(self.rows, other.rows)]
+        rows, error = self.product(other, bits)
+        return _Enclosed.of(rows if divisor == 1 else [[entry // divisor for entry in row] for row in rows], error)
+
+    def product(self, other: _Enclosed, bits: int) -> tuple[list[list[int]], int]:
+        """Return the product in parts that are larger by so many bits, and a bound for its error."""
+        rows = [[entry >> bits for entry in row] for row in whole_product(self.rows, other.rows)]
         error = self.norm * other.error + self.error * other.norm + self.error * other.error
-        return _Enclosed.of(rows, (error >> bits) // divisor + 1 + 2 * len(rows[0]))
+        return rows, (error >> bits) + 1 + 2 * len(rows[0])
+
+
+    def beside(self, other: _Enclosed) -> _Enclosed:
+        """Return both matrices side by side."""
+        return _Enclosed.of([a + b for a, b in zip(self.rows, other.rows, strict=True)], self.error + other.error)
+
+    def above(self, other: _Enclosed) -> _Enclosed:
+        """Return this matrix above another one."""
+        return _Enclosed.of(self.rows + other.rows, max(self.error, other.error))
+
+
+def _rounded(rows: Sequence[Sequence[Fraction]], bits: int) -> _Enclosed:
+    """Return a matrix in parts of 2⁻ᵇⁱᵗˢ."""
+    return _Enclosed.of([[round(entry * (1 << bits)) for entry in row] for row in rows], len(rows[0]))
 
 
 @lru_cache(maxsize=2)
-def _stepped(matrix: Matrix, start: tuple[Fraction, ...], step: Fraction, count: int) -> list[list[int]]:
-    """Return the state at `count` instants, in parts of 2 to the power of _BITS, each off by at most one.
+def _followed(
+    matrix: Matrix, start: tuple[Fraction, ...], rows: tuple[tuple[Fraction, ...], ...], step: Fraction, count: int
+) -> list[list[int]]:
+    """Return row · state at `count` instants for each row, in parts of 2⁻⁷², each off by less than 2⁸ of them.
 
+    With P = e^{Mh} these are (row Pⁱᵐ) · (Pʲ start), j < m: both factors are doubled, and one product gives all.
     Raises ValueError where rounding leaves fewer bits.
     """
     table = [[entry.fraction() * step for entry in row] for row in matrix.rows]
     for bits in _KEPT:
         power = _exponential(table, bits)
-        states, error = [[round(part * (1 << bits))] for part in start], 1  # a column for each instant
-        while len(states[0]) < count:
-            largest = max(max(map(abs, row)) for row in states)
-            more = [[entry >> bits for entry in row] for row in whole_product(power.rows, states)]
-            error = max(error, ((power.norm * error + power.error * (largest + error)) >> bits) + 3)
-            states = [known + new for known, new in zip(states, more, strict=True)]
+        states, seen = _rounded([(part,) for part in start], bits), _rounded(rows, bits)
+        while len(states.rows[0]) ** 2 < count:
+            states = states.beside(power.times(states, bits))
             power = power.times(power, bits)
-        spare = bits - _BITS
-        if error < 1 << (spare - 1):
-            half = 1 << (spare - 1)
-            return [[(part + half) >> spare for part in state] for state in islice(zip(*states, strict=True), count)]
+        width = len(states.rows[0])
+        while len(seen.rows) * width < count * len(rows):
+            seen = seen.above(seen.times(power, bits))
+            power = power.times(power, bits)
+        found, error = seen.product(states, 2 * bits - _BITS)
+        if error < _OFF_BY:
+            return [list(islice(chain(*found[k :: len(rows)]), count)) for k in range(len(rows))]
     raise ValueError("a response with too much to compute")
 
 
@@ -426,7 +426,7 @@ def _exponential(table: list[list[Fraction]], bits: int) -> _Enclosed:
     """Return e^M: the power series of M/2ᵏ, of norm 2⁻¹⁶ at most, squared k times."""
     order = len(table)
     halvings = _SMALL + int(max(sum(map(abs, row), Fraction(0)) for row in table)).bit_length()
-    small = _Enclosed.of([[round(entry * (1 << bits) / (1 << halvings)) for entry in row] for row in table], order)
+    small = _rounded([[entry / (1 << halvings) for entry in row] for row in table], bits)
     term = total = _Enclosed.of([[(i == j) << bits for j in range(order)] for i in range(order)], 0)
     for k in range(1, bits // _SMALL + 1):
         term = term.times(small, bits, k)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import cached_property
 from math import lcm, pi
-from operator import mul
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypeAlias
 
 from symobs.exact import Matrix, Scalar, companion
@@ -100,25 +99,26 @@ def plot_courses(
             between = state_response(matrix.value, start, end / (2 * steps), 2 * steps + 1, _PARTS)
         except ArithmeticError:
             return
-        made = tuple(
-            PlottedResponse(name, index if table.shape[0] > 1 else 0, row, _course(row, between[::2]), dashed)
+        columns = list(zip(*between, strict=True))
+        courses = [
+            (name, index if table.shape[0] > 1 else 0, row, _course(row, columns), dashed)
             for name, table, dashed in signals
             for index, row in enumerate(rows_of(table), 1)
-        )
+        ]
+        made = tuple(PlottedResponse(name, at, row, course[::2], dashed) for name, at, row, course, dashed in courses)
         window = window_of(end, made, _PARTS)
         if window[1][0] == window[1][1]:
             return
-        if all(_is_smooth(_course(response.row, between), window[1]) for response in made):
+        if all(_is_smooth(course, window[1]) for _, _, _, course, _ in courses):
             page.plot(TimeResponse(states, starts, made, window, _PARTS), matrix, say=say, **slots)
             return
 
 
 def _is_smooth(heights: Sequence[int], edges: Interval) -> bool:
     """Return whether segments from every other instant to the next pass close by the values between them."""
-    allowed = 2 * _BETWEEN * (edges[1] - edges[0]) * _PARTS
-    return all(
-        abs(a - 2 * v + b) <= allowed for a, v, b in zip(heights[::2], heights[1::2], heights[2::2], strict=False)
-    )
+    allowed = int(2 * _BETWEEN * (edges[1] - edges[0]) * _PARTS)
+    triples = zip(heights[::2], heights[1::2], heights[2::2], strict=False)
+    return all([abs(a - 2 * v + b) <= allowed for a, v, b in triples])
 
 
 def window_of(end: Fraction, responses: Sequence[PlottedResponse], parts: int) -> tuple[Interval, Interval]:
@@ -133,11 +133,14 @@ def rows_of(table: Matrix) -> list[tuple[Fraction, ...]]:
     return [tuple(entry.fraction() for entry in row) for row in table.rows]
 
 
-def _course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> tuple[int, ...]:
-    """Return row · state, in whole parts."""
+def _course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> Sequence[int]:
+    """Return row · state, in whole parts, at all instants; `states` are the courses of the components of the state."""
     common = lcm(*(part.denominator for part in row))
-    whole = [int(part * common) for part in row]
-    return tuple(sum(map(mul, whole, state)) // common for state in states)
+    first, *others = [(int(part * common), state) for part, state in zip(row, states, strict=True) if part] or [(0, states[0])]
+    total = first[1] if first[0] == 1 else [first[0] * value for value in first[1]]
+    for factor, state in others:
+        total = [value + factor * more for value, more in zip(total, state, strict=True)]
+    return tuple(total) if common == 1 else tuple([value // common for value in total])
 
 
 def rounded_up(value: float) -> Fraction:
