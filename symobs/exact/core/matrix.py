@@ -85,6 +85,8 @@ class Matrix:
     @staticmethod
     def block(blocks: Sequence[Sequence[Matrix]]) -> Matrix:
         """Return the matrix of blocks of matching sizes."""
+        if all([isinstance(part.table, fmpz_mat) for line in blocks for part in line]):
+            return _block_of_numbers(blocks)
         rows: list[list[Scalar]] = []
         for line in blocks:
             heights = {part.shape[0] for part in line}
@@ -219,6 +221,8 @@ class Matrix:
     # -- arithmetic -----------------------------------------------------------------------------------------------
 
     def _fit(self, other: Matrix) -> tuple[Matrix, Matrix, Field]:
+        if self.field is other.field:
+            return self, other, self.field
         field = self.field | other.field
         return self.within(field), other.within(field), field
 
@@ -397,6 +401,17 @@ def _lowest(matrix: Matrix) -> Matrix:
         return matrix
     table = fmpz_mat(*matrix.shape, [entry // shared for entry in matrix.table.entries()])
     return Matrix(matrix.field, table, matrix.field.context.constant(below // shared), matrix.shape)
+
+
+def _block_of_numbers(blocks: Sequence[Sequence[Matrix]]) -> Matrix:
+    """Return the matrix of blocks of numbers."""
+    below = reduce(ring.common_multiple, [part.denominator for line in blocks for part in line], RATIONALS.one)
+    rows: list[list[fmpz]] = []
+    for line in blocks:
+        tables = [part.scaled(below / part.denominator).table.tolist() for part in line]  # type: ignore[union-attr]
+        rows += [[entry for part in row for entry in part] for row in zip(*tables, strict=True)]
+    width = sum(part.shape[1] for part in blocks[0])
+    return _lowest(Matrix(RATIONALS, fmpz_mat(len(rows), width, list(itertools.chain(*rows))), below, (len(rows), width)))
 
 
 # Matrices of numbers, in integers over one common denominator, and numbers as multiples of common measures.

@@ -12,6 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
 from symobs.exact import EIGENVALUE, AlgebraicExtension, Ideal, Matrix, Scalar, rank
+from symobs.exact.core.field import RATIONALS
 from symobs.exact.core.generators import function_named
 from symobs.exact.core.modular import block, scaled
 from symobs.formula.tree import calculus
@@ -111,7 +112,8 @@ class Exact:
         for name in reversed(self.coefficients):
             if name in value.field.position:
                 value = value.substitute({name: self.coefficients[name]})
-        return value
+        is_of_numbers = isinstance(value, Matrix) and value.field.names and not value.names
+        return value.within(RATIONALS) if is_of_numbers else value  # where products take much less time
 
     def shape(self, value: Scalar | Matrix) -> tuple[int, int] | None:
         return value.shape if isinstance(value, Matrix) else None

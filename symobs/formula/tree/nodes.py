@@ -7,7 +7,7 @@ environment (`evaluate`), and is printed only by a format.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from symobs.exact.core.generators import all_roots
 from symobs.ground.dataclass import dataclass
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
     from symobs.exact import Matrix, Root, Scalar
     from symobs.exact.core.generators import Function
+
+
+Found = TypeVar("Found")
 
 
 @dataclass
@@ -189,7 +192,7 @@ class Relation:
     @cached_property
     def is_of_instants(self) -> bool:
         """Whether it contains a value at an instant, or an integral."""
-        return any(contains(member, (At, Integral)) for member in self.members)
+        return any(map(is_of_instants, self.members))
 
 
 @dataclass
@@ -323,18 +326,42 @@ def divisors(formula: Formula) -> Iterator[Formula]:
         yield from divisors(part)
 
 
+def _kept(find: Callable[[Formula], Found]) -> Callable[[Formula], Found]:
+    """Keep what is found in a formula beside its parts: the formula cannot be changed."""
+    name = f"_{find.__name__}"
+
+    def kept(formula: Formula) -> Found:
+        own = formula.__dict__
+        if name not in own:
+            own[name] = find(formula)
+        found: Found = own[name]
+        return found
+
+    kept.__doc__ = find.__doc__
+    return kept
+
+
+@_kept
 def derived_by(formula: Formula) -> frozenset[str]:
     """Return the names of the variables of all derivatives in a formula."""
     own = {formula.name} if isinstance(formula, Derivative) else set()
     return frozenset(own).union(*(derived_by(part) for part in children(formula)))
 
 
+@_kept
+def is_of_instants(formula: Formula) -> bool:
+    """Return whether a formula contains a value at an instant, or an integral."""
+    return isinstance(formula, (At, Integral)) or any([is_of_instants(part) for part in children(formula)])
+
+
+@_kept
 def roots_written(formula: Formula) -> frozenset[Function]:
     """Return the square roots in the values written out in a formula, also in arguments of functions."""
     own = all_roots(formula.value) if isinstance(formula, Literal) else ()
     return frozenset(own).union(*(roots_written(part) for part in children(formula)))
 
 
+@_kept
 def letters(formula: Formula) -> frozenset[str]:
     """Return the names of all letters in a formula."""
     if isinstance(formula, Letter):

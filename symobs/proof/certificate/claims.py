@@ -20,12 +20,10 @@ from symobs.exact.core.generators import NotWritten, function_named, symbols_nam
 from symobs.exact.core.modular import POINT_BITS, PRIME_BITS, PRIMES_BELOW, Point, VanishingDenominator, squares_of
 from symobs.formula.tree import (
     Apply,
-    At,
     Decimals,
     Environment,
     Exact,
     Formula,
-    Integral,
     Letter,
     Literal,
     Modular,
@@ -33,11 +31,11 @@ from symobs.formula.tree import (
     Relation,
     agree,
     children,
-    contains,
     derived_by,
     differ,
     divisors,
     evaluate,
+    is_of_instants,
     is_rational,
 )
 from symobs.formula.tree.calculus import TIME
@@ -189,7 +187,7 @@ def _needs_values(relation: Relation, environment: Environment, leaves: Sequence
     if environment.relations:
         return True
     meanings = [formula for formula in environment.signals.values() if formula is not None]
-    if relation.is_of_instants or any(contains(formula, (At, Integral)) for formula in meanings):
+    if relation.is_of_instants or any(map(is_of_instants, meanings)):
         return True
     by = relation.derived_by.union(*map(derived_by, meanings))
     if by - {TIME} or (by and environment.variable == TIME):  # a constant, too, has a derivative, which no residue has
