@@ -257,14 +257,14 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
         if highest <= worth or left < room.left or right > room.right or bottom < room.bottom or top > room.top:
             continue
         box = Rectangle(left, bottom, right, top)
-        if any(box.meets(other) for other in taken) or _is_crossed(box.grown(_CLEAR), pieces):
+        if any([box.meets(other) for other in taken]) or (best is None and _is_crossed(box.grown(_CLEAR), pieces)):
             continue
         value = min([_FAR, *(_apart(box, other) for other in taken)]) / 3
         value -= _MIDDLE * from_middle
         value += _FREE * (not any(_crosses(line, box) for line in around.pale))
         value += _UNSHADED * (not any(contains(area, box.centre) for area in around.shades))
         value += _distance(box, others, worth - value)
-        if value > worth:
+        if value > worth and (best is None or not _is_crossed(box.grown(_CLEAR), pieces)):
             best, worth = (x, y), value
     return None if best is None else TextLabel(content, best)
 
@@ -325,17 +325,21 @@ def _places(line: Sequence[Point]) -> list[Point]:
     return [point for point, _, _ in walk(line, _STEP)] or list(line)
 
 
-def _distance(box: Rectangle, places: Iterable[Point], enough: float) -> float:
-    """Return the distance of places from a box, up to _FAR, or any value below `enough`."""
+def _distance(box: Rectangle, places: list[Point], enough: float) -> float:
+    """Return the distance of places from a box, up to _FAR, or any value below `enough`.
+
+    A place that is so near is put first: it is near to the next box, too.
+    """
     left, right, bottom, top = box.left, box.right, box.bottom, box.top
     nearest = _FAR
-    for x, y in places:
+    for index, (x, y) in enumerate(places):
         dx = left - x if x < left else x - right if x > right else 0.0
         if dx < nearest:
             dy = bottom - y if y < bottom else y - top if y > top else 0.0
             if dy < nearest:
                 nearest = min(nearest, hypot(dx, dy))
                 if nearest <= enough:
+                    places.insert(0, places.pop(index))
                     break
     return nearest
 
