@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from decimal import Decimal
 from fractions import Fraction
-from itertools import pairwise
-from math import ceil, exp, isqrt, lcm, log, log10, pi
+from math import ceil, exp, isqrt, log, log10, pi
 from operator import mul
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +13,7 @@ from symobs.exact import Matrix
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.ground.errors import InputError
 from symobs.system import Symbols, read_matrix
-from symobs.tasks.analysis.time_response.response import rounded_up
+from symobs.tasks.analysis.time_response.response import course, rounded_up
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -263,7 +262,7 @@ def _end(matrix: Matrix, asked: str | None, *, discrete: bool) -> Fraction:
 # -- how --------------------------------------------------------------------------------------------------------------
 
 
-def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[list[int]], list[list[int]]]:
+def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[Sequence[int]], list[Sequence[int]]]:
     """Return the heights of every signal in fine parts, within a quarter of the finest ones that are shown.
 
     They are those of every half segment, and fewer from the end to twice the end.  Segments are halved where a response
@@ -274,37 +273,39 @@ def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[list[in
     if any(4 * (sum(map(abs, row)) + 1) * 10**_FINEST > _FINE for _, _, row, _ in signals.rows):
         raise NoResponse(_TOO_WIDE)
     segments, fastest = count - 1, spectral_radius(signals.matrix) * float(end)
-    coarse = _at_instants(signals, end / segments, segments + 1)
+    fine = _at_instants(signals, end / (2 * segments), 2 * segments + 1)
+    coarse = [line[::2] for line in fine]
     height = max(map(max, coarse)) - min(map(min, coarse))
-    bend = max(map(abs, (second for line in coarse for second in _second_differences(line))))
+    bend = max(_largest(_second_differences(line)) for line in coarse)
     while 2 * segments <= _MOST_SEGMENTS and (fastest > _TURN * segments or bend > 8 * _BETWEEN * height):
         segments, bend = 2 * segments, bend // 4
     if fastest > _TURN * segments:  # a mode might turn unseen between two instants
         raise NoResponse(_TOO_FAST)
     behind = max(_LEAST_BEHIND, ceil(fastest / _TURN))
     after = _at_instants(signals, end / behind, 2 * behind + 1)
-    return _at_instants(signals, end / (2 * segments), 2 * segments + 1), [line[behind:] for line in after]
+    if segments > count - 1:
+        fine = _at_instants(signals, end / (2 * segments), 2 * segments + 1)
+    return fine, [line[behind:] for line in after]
 
 
-def _second_differences(line: list[int]) -> list[int]:
+def _second_differences(line: Sequence[int]) -> list[int]:
     return [a - 2 * v + b for a, v, b in zip(line, line[1:], line[2:], strict=False)]
 
 
-def _at_instants(signals: Signals, step: Fraction, count: int) -> list[list[int]]:
+def _largest(line: Sequence[int]) -> int:
+    """Return the largest modulus."""
+    return max(max(line), -min(line))  # noqa: PLW3301 - the other form copies the line
+
+
+def _at_instants(signals: Signals, step: Fraction, count: int) -> list[Sequence[int]]:
     from symobs.exact.time_functions.matrix_exponential import state_response  # noqa: PLC0415 - FLINT
 
     try:
         states = state_response(signals.matrix, signals.start, step, count, _FINE)
     except ArithmeticError:
         raise NoResponse(_TOO_WIDE) from None
-    components, lines = list(zip(*states, strict=True)), []
-    for _, _, row, _ in signals.rows:
-        common = lcm(*(part.denominator for part in row))
-        whole = [int(part * common) for part in row if part]
-        seen = [component for component, part in zip(components, row, strict=True) if part]
-        one = whole == [1] and common == 1
-        lines.append(list(seen[0]) if one else [sum(map(mul, whole, at)) // common for at in zip(*seen, strict=True)])
-    return lines
+    components = list(zip(*states, strict=True))
+    return [course(row, components) for _, _, row, _ in signals.rows]
 
 
 def _stepped(signals: Signals, count: int) -> list[list[int]]:
@@ -327,7 +328,9 @@ def _decimal(value: Fraction) -> str:
 # -- readouts ---------------------------------------------------------------------------------------------------------
 
 
-def _read_off(line: list[int], after: list[int], end: Fraction, every: int, final: int | None) -> dict[str, str]:
+def _read_off(
+    line: Sequence[int], after: Sequence[int], end: Fraction, every: int, final: int | None
+) -> dict[str, str]:
     """Return the peak and the last value up to the end, and when the response settles, if that is before the end.
 
     It has settled from an instant on if its distance from the final value stays below a fiftieth of the largest one up to
@@ -348,36 +351,43 @@ def _read_off(line: list[int], after: list[int], end: Fraction, every: int, fina
     if final and (percent := 100 * (peak / final - 1)) >= _LEAST_PERCENT:
         found["overshoot"] = _digits(Fraction(percent), 3)
     band = int(_SETTLED * abs(largest)) - 1
-    settled = max(
-        (k + 1 for k, most in enumerate(_most(distance, is_continuous=is_continuous)) if most > band), default=0
-    )
-    stays = all(
-        most <= band
-        for most in _most([value - final for value in after] if final else after, is_continuous=is_continuous)
-    )
-    return found | ({"settles": _digits(settled * end / last, 3)} if stays else {})
+    if _last_above(band, [value - final for value in after] if final else after, is_continuous=is_continuous):
+        return found
+    settled = _last_above(band, distance, is_continuous=is_continuous)
+    return found | {"settles": _digits(settled * end / last, 3)}
 
 
-def _peak(line: list[int], *, is_continuous: bool) -> Fraction | None:
+def _peak(line: Sequence[int], *, is_continuous: bool) -> Fraction | None:
     """Return the value of largest modulus, between the instants too; None where the line is too coarse."""
-    last = len(line) - 1
-    place = max(range(last + 1), key=lambda k: abs(line[k]))
+    last, largest = len(line) - 1, _largest(line)
+    place = next(k for k, value in enumerate(line) if abs(value) == largest)
     peak = Fraction(line[place])
     if is_continuous:
         second = _second_differences(line)
-        if max(map(abs, second)) > _COARSEST * abs(peak):
+        if _largest(second) > _COARSEST * largest:
             return None
         if 0 < place < last and (bend := second[place - 1]):
             peak -= Fraction((line[place + 1] - line[place - 1]) ** 2, 8 * bend)  # of the parabola through three
     return peak
 
 
-def _most(line: list[int], *, is_continuous: bool) -> list[int]:
-    """Return what a response does not exceed on each segment: it may bulge by an eighth of the second difference."""
-    second = _second_differences(line) if is_continuous else []
-    bulges = [max(abs(a), abs(b)) // 8 + 1 for a, b in pairwise([*second[:1], *second, *second[-1:]])]
-    ends = [max(abs(a), abs(b)) for a, b in pairwise(line)]
-    return [end + bulge for end, bulge in zip(ends, bulges, strict=True)] if is_continuous else ends
+def _last_above(band: int, line: Sequence[int], *, is_continuous: bool) -> int:
+    """Return the number of the last segment on which a response may leave a band, counted from 1; 0 where there is none.
+
+    It may bulge out of a segment by an eighth of the second difference.
+    """
+    last = len(line) - 1
+    if is_continuous and _largest(line) < band // 2:  # no second difference is larger than four times the values
+        return 0
+    for k in range(last, 0, -1):
+        a, b = line[k - 1], line[k]
+        most = max(abs(a), abs(b))
+        if is_continuous:
+            bends = [line[at - 1] - 2 * line[at] + line[at + 1] for at in (k - 1, k) if 0 < at < last]
+            most += max(map(abs, bends)) // 8 + 1
+        if most > band:
+            return k
+    return 0
 
 
 def _digits(value: Fraction, count: int) -> str:

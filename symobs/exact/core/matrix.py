@@ -85,7 +85,7 @@ class Matrix:
     @staticmethod
     def block(blocks: Sequence[Sequence[Matrix]]) -> Matrix:
         """Return the matrix of blocks of matching sizes."""
-        if all([isinstance(part.table, fmpz_mat) for line in blocks for part in line]):
+        if all(isinstance(part.table, fmpz_mat) for line in blocks for part in line):
             return _block_of_numbers(blocks)
         rows: list[list[Scalar]] = []
         for line in blocks:
@@ -411,7 +411,9 @@ def _block_of_numbers(blocks: Sequence[Sequence[Matrix]]) -> Matrix:
         tables = [part.scaled(below / part.denominator).table.tolist() for part in line]  # type: ignore[union-attr]
         rows += [[entry for part in row for entry in part] for row in zip(*tables, strict=True)]
     width = sum(part.shape[1] for part in blocks[0])
-    return _lowest(Matrix(RATIONALS, fmpz_mat(len(rows), width, list(itertools.chain(*rows))), below, (len(rows), width)))
+    return _lowest(
+        Matrix(RATIONALS, fmpz_mat(len(rows), width, list(itertools.chain(*rows))), below, (len(rows), width))
+    )
 
 
 # Matrices of numbers, in integers over one common denominator, and numbers as multiples of common measures.
@@ -450,7 +452,7 @@ def horner(coefficients: Sequence[Scalar], matrix: Matrix, vector: Matrix) -> Ma
 def whole_product(left: Sequence[Sequence[int]], right: Sequence[Sequence[int]]) -> list[list[int]]:
     """Return the product of two matrices of whole numbers, given by their rows.
 
-    Its entries stay numbers of the kernel, which reckon as Python's do: to turn one into the other takes longer than the product.
+    Its entries stay numbers of the kernel: to turn them into Python's takes longer than the product.
     """
     return cast("list[list[int]]", (fmpz_mat(left) * fmpz_mat(right)).tolist())
 

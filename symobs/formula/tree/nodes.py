@@ -351,7 +351,7 @@ def derived_by(formula: Formula) -> frozenset[str]:
 @_kept
 def is_of_instants(formula: Formula) -> bool:
     """Return whether a formula contains a value at an instant, or an integral."""
-    return isinstance(formula, (At, Integral)) or any([is_of_instants(part) for part in children(formula)])
+    return isinstance(formula, (At, Integral)) or any(is_of_instants(part) for part in children(formula))
 
 
 @_kept

@@ -257,7 +257,7 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
         if highest <= worth or left < room.left or right > room.right or bottom < room.bottom or top > room.top:
             continue
         box = Rectangle(left, bottom, right, top)
-        if any([box.meets(other) for other in taken]) or (best is None and _is_crossed(box.grown(_CLEAR), pieces)):
+        if any(box.meets(other) for other in taken) or (best is None and _is_crossed(box.grown(_CLEAR), pieces)):
             continue
         value = min([_FAR, *(_apart(box, other) for other in taken)]) / 3
         value -= _MIDDLE * from_middle

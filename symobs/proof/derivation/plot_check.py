@@ -381,7 +381,6 @@ class _Enclosed(NamedTuple):
         error = self.norm * other.error + self.error * other.norm + self.error * other.error
         return rows, (error >> bits) + 1 + 2 * len(rows[0])
 
-
     def beside(self, other: _Enclosed) -> _Enclosed:
         """Return both matrices side by side."""
         return _Enclosed.of([a + b for a, b in zip(self.rows, other.rows, strict=True)], self.error + other.error)

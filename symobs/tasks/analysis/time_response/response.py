@@ -101,7 +101,7 @@ def plot_courses(
             return
         columns = list(zip(*between, strict=True))
         courses = [
-            (name, index if table.shape[0] > 1 else 0, row, _course(row, columns), dashed)
+            (name, index if table.shape[0] > 1 else 0, row, course(row, columns), dashed)
             for name, table, dashed in signals
             for index, row in enumerate(rows_of(table), 1)
         ]
@@ -118,7 +118,7 @@ def _is_smooth(heights: Sequence[int], edges: Interval) -> bool:
     """Return whether segments from every other instant to the next pass close by the values between them."""
     allowed = int(2 * _BETWEEN * (edges[1] - edges[0]) * _PARTS)
     triples = zip(heights[::2], heights[1::2], heights[2::2], strict=False)
-    return all([abs(a - 2 * v + b) <= allowed for a, v, b in triples])
+    return all(abs(a - 2 * v + b) <= allowed for a, v, b in triples)
 
 
 def window_of(end: Fraction, responses: Sequence[PlottedResponse], parts: int) -> tuple[Interval, Interval]:
@@ -133,10 +133,12 @@ def rows_of(table: Matrix) -> list[tuple[Fraction, ...]]:
     return [tuple(entry.fraction() for entry in row) for row in table.rows]
 
 
-def _course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> Sequence[int]:
+def course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> Sequence[int]:
     """Return row · state, in whole parts, at all instants; `states` are the courses of the components of the state."""
     common = lcm(*(part.denominator for part in row))
-    first, *others = [(int(part * common), state) for part, state in zip(row, states, strict=True) if part] or [(0, states[0])]
+    first, *others = [(int(part * common), state) for part, state in zip(row, states, strict=True) if part] or [
+        (0, states[0])
+    ]
     total = first[1] if first[0] == 1 else [first[0] * value for value in first[1]]
     for factor, state in others:
         total = [value + factor * more for value, more in zip(total, state, strict=True)]
