@@ -304,8 +304,7 @@ def _at_instants(signals: Signals, step: Fraction, count: int) -> list[Sequence[
         states = state_response(signals.matrix, signals.start, step, count, _FINE)
     except ArithmeticError:
         raise NoResponse(_TOO_WIDE) from None
-    components = list(zip(*states, strict=True))
-    return [course(row, components) for _, _, row, _ in signals.rows]
+    return [course(row, states) for _, _, row, _ in signals.rows]
 
 
 def _stepped(signals: Signals, count: int) -> list[list[int]]:

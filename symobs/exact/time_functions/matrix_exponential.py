@@ -11,7 +11,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from flint import arb, arb_mat, fmpq, fmpq_mat
+from flint import arb, arb_mat, fmpq, fmpq_mat, fmpz, fmpz_mat
 
 from symobs.exact.algebraic.enclosure import near, polynomial_ball
 from symobs.exact.algebraic.extension import AlgebraicExtension
@@ -262,15 +262,16 @@ def _over_its_field(matrix: Matrix) -> Matrix:
 _BITS = (128, 256, 512, 1024, 2048, 4096)
 
 
-_HALF = arb(0.5)
+#: So many columns are enclosed before they are doubled as whole numbers.
+_ENCLOSED = 16
+
+
+#: 0 ± 1.
+_UNIT = arb(0, 1)
 
 
 #: Bits of a rational number near to one that is none.
 _NEAR = 240
-
-
-#: Columns are doubled until so many blocks of them are all.
-_BLOCKS = 8
 
 
 def eigenvalues_near(matrix: Matrix) -> list[complex]:
@@ -304,27 +305,81 @@ def fraction_near(value: Scalar) -> Fraction:
 def state_response(
     matrix: Matrix, start: Sequence[Fraction | Scalar], step: Fraction, count: int, parts: int
 ) -> list[list[int]]:
-    """Return e^{Mt} v at `count` instants from 0 on, in integer multiples of 1/parts, with errors of at most one.
+    """Return each component of e^{Mt} v at `count` instants from 0 on, in multiples of 1/parts, with errors of at most one.
 
-    The columns that are known times e^{Mh}, e^{2Mh}, e^{4Mh}, … are as many again, until a few blocks of them are all: an
-    enclosure goes through few products.  Raises `ArithmeticError` where the enclosures stay too wide.
+    Raises `ArithmeticError` where the enclosures stay too wide.
     """
     for bits in _BITS:
-        with Precision(bits):
-            known = arb_mat([[_ball(entry) for entry in row] for row in matrix.rows])
-            power = (known * arb(fmpq(step.numerator, step.denominator))).exp()
-            columns = [[_ball(Scalar.of(part)) * parts] for part in start]
-            while _BLOCKS * len(columns[0]) < count:
-                more = (power * arb_mat(columns)).tolist()
-                columns = [[*row, *new] for row, new in zip(columns, more, strict=True)]
-                power = power * power
-            block, found = arb_mat(columns), list[tuple[int, ...]]()
-            while (states := _nearest(block)) and len(found) + len(states) < count:
-                found += states
-                block = power * block
-            if states:
-                return [list(state) for state in [*found, *states][:count]]
+        with Precision(2 * bits):
+            found = _doubled(matrix, start, step, count, parts, bits)
+        if found is not None:
+            return found
     raise ArithmeticError("a response with too much to compute")
+
+
+def _doubled(
+    matrix: Matrix, start: Sequence[Fraction | Scalar], step: Fraction, count: int, parts: int, bits: int
+) -> list[list[int]] | None:
+    """Return the same from fractions of so many bits; None where they are too few.
+
+    The first columns are enclosed, then columns times e^{Mkh} are as many again.  A component at all instants is one long
+    integer, a field of bits for each: Σ xᵢ 2^(width i), with xᵢ in parts of 2⁻ᵏᵉᵖᵗ.  Its error is at most `off` of these parts
+    and it is not larger than `most`.
+    """
+    kept, order, width = bits // 2, len(start), 64 * (bits // 32 + 3)
+    known = arb_mat([[_ball(entry) for entry in row] for row in matrix.rows])
+    power = (known * arb(fmpq(step.numerator, step.denominator))).exp()
+    block = arb_mat([[_ball(Scalar.of(part)) * parts] for part in start])
+    while block.ncols() < min(_ENCLOSED, count):
+        block = arb_mat([row + new for row, new in zip(block.tolist(), (power * block).tolist(), strict=True)])
+        power = power * power
+    first = _whole(block, kept)
+    if first is None:
+        return None
+    lines, columns = [_packed(row, width) for row in first], len(first[0])
+    ones, off, most = _packed([fmpz(1)] * columns, width), 2, max(abs(x) for row in first for x in row) + 2
+    while columns < count:
+        table = _whole(power, bits)
+        norm = max(sum(map(abs, row)) for row in table) if table else fmpz(0)
+        if table is None or norm * most >> (width - 2):
+            return None
+        more = min(columns, count - columns)
+        fields = fmpz(1) << width * more
+        ones_there = ones % fields
+        high, mask = ones_there << (width - 1), (ones_there << (width - bits)) - ones_there
+        products = fmpz_mat(table) * fmpz_mat([[line] for line in lines])
+        news = [((((x + high) % fields) >> bits) & mask) - (high >> bits) for x in products.entries()]
+        lines = [line + (new << width * columns) for line, new in zip(lines, news, strict=True)]
+        ones += ones_there << width * columns
+        off = max(off, (((norm + 2 * order) * off + 2 * order * most) >> bits) + 1)
+        most, columns, power = max(most, (norm * most >> bits) + 1), columns + more, power * power
+    if off >> (kept - 1):
+        return None
+    half = (ones << (width - 1)) + (ones << (kept - 1))
+    views = [memoryview(int((x + half) >> kept).to_bytes(columns * width // 8, "little")) for x in lines]
+    if most >> (kept + 126):
+        whole, size, below = width // 8, (width - kept) // 8, 1 << (width - 1 - kept)
+        places = range(0, whole * count, whole)
+        return [[int.from_bytes(view[at : at + size], "little") - below for at in places] for view in views]
+    pairs = [(view.cast("q")[1 :: width // 64], view.cast("Q")[:: width // 64]) for view in views]
+    return [[above << 64 | below for above, below in zip(*pair, strict=True)][:count] for pair in pairs]
+
+
+def _whole(balls: arb_mat, bits: int) -> list[list[fmpz]] | None:
+    """Return enclosures in parts of 2⁻ᵇⁱᵗˢ, off by at most two; None where they are wider."""
+    scaled = balls * arb(2) ** bits
+    near = scaled.mid()
+    if not (near + arb_mat(near.nrows(), near.ncols(), [_UNIT] * (near.nrows() * near.ncols()))).contains(scaled):
+        return None
+    return [[entry.floor().unique_fmpz() for entry in row] for row in near.tolist()]
+
+
+def _packed(fields: Sequence[fmpz], width: int) -> fmpz:
+    """Return Σ xᵢ 2^(width i)."""
+    total = fmpz(0)
+    for field in reversed(fields):
+        total = (total << width) + field
+    return total
 
 
 def _ball(value: Scalar) -> arb:
@@ -332,18 +387,3 @@ def _ball(value: Scalar) -> arb:
     if value.is_constant:
         return arb(fmpq(number_of(value.numerator_part), number_of(value.denominator_part)))
     return polynomial_ball(value.numerator, {}) / polynomial_ball(value.denominator, {})
-
-
-def _nearest(columns: arb_mat) -> list[tuple[int, ...]]:
-    """Return the columns as whole numbers nearest to the middles of intervals; none where one of these is too wide."""
-    halves = arb_mat(columns.nrows(), columns.ncols(), [_HALF] * (columns.nrows() * columns.ncols()))
-    rows = [[_below(ball) for ball in row] for row in (columns + halves).tolist()]
-    return [] if any(None in row for row in rows) else list(zip(*rows, strict=True))
-
-
-def _below(ball: arb) -> int | None:
-    """Return the whole number below an interval, below its middle where it is narrow; None for one that is wide."""
-    whole: Any = ball.floor().unique_fmpz()
-    if whole is None and ball.rad() < _HALF:
-        whole = ball.mid().floor().unique_fmpz()  # never None for what has no radius
-    return None if whole is None else int(whole)

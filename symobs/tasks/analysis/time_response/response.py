@@ -99,9 +99,8 @@ def plot_courses(
             between = state_response(matrix.value, start, end / (2 * steps), 2 * steps + 1, _PARTS)
         except ArithmeticError:
             return
-        columns = list(zip(*between, strict=True))
         courses = [
-            (name, index if table.shape[0] > 1 else 0, row, course(row, columns), dashed)
+            (name, index if table.shape[0] > 1 else 0, row, course(row, between), dashed)
             for name, table, dashed in signals
             for index, row in enumerate(rows_of(table), 1)
         ]

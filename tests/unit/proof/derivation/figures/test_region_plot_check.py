@@ -385,34 +385,6 @@ def test_what_is_written_at_an_end_is_its_place() -> None:
         assert found == ([] if is_so else [f"{label} = 0"]), label
 
 
-# -- what was seen is not looked at again -------------------------------------------------------------------------------------
-
-
-def test_a_picture_is_looked_at_once_for_one_polynomial(monkeypatch: pytest.MonkeyPatch) -> None:
-    picture = LinePicture("k", LINE, ((end(0), None),))
-    known = Environment(values={"chi": s + k})
-    monkeypatch.setattr(plot_check, "_FAITHFUL", plot_check._FAITHFUL.copy())
-
-    def found(one: LinePicture, **changes: Any) -> list[str]:
-        discrete = changes.pop("discrete", False)
-        return list(faults(one, CHI, replace(known, **changes), discrete=discrete))
-
-    assert found(picture) == []
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(plot_check, "_of_line", lambda *_: iter(["it was looked at"]))
-        assert found(picture) == []
-        assert found(replace(picture)) == ["it was looked at"]
-        for others in (
-            {"values": {"chi": s + 2 * k}},
-            {"values": {"chi": z + k}, "variable": "z"},
-            {"signs": {"k": "real"}},
-            {"discrete": True},
-        ):
-            assert found(picture, **others) == ["it was looked at"]
-            assert found(picture, **others) == ["it was looked at"]  # what was false is not kept
-        assert found(picture) == []
-
-
 def test_a_place_is_stable_or_not() -> None:
     test = asked(h2 * s**2 + (h1 + 1) * s + h2, "h1", "h2", h1="positive")
     for place, expected in (((1, 1), True), ((1, -1), False), ((1, 0), False), (("-1/2", 1), False), ((0, 1), False)):
