@@ -273,8 +273,11 @@ def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[Sequenc
     if any(4 * (sum(map(abs, row)) + 1) * 10**_FINEST > _FINE for _, _, row, _ in signals.rows):
         raise NoResponse(_TOO_WIDE)
     segments, fastest = count - 1, spectral_radius(signals.matrix) * float(end)
-    fine = _at_instants(signals, end / (2 * segments), 2 * segments + 1)
-    coarse = [line[::2] for line in fine]
+    most = segments
+    while 2 * most <= _MOST_SEGMENTS:
+        most *= 2
+    states = _at_instants(signals, end / (2 * most), 2 * most + 1)
+    coarse = _seen(signals, states, 2 * most // segments)
     height = max(map(max, coarse)) - min(map(min, coarse))
     bend = max(_largest(_second_differences(line)) for line in coarse)
     while 2 * segments <= _MOST_SEGMENTS and (fastest > _TURN * segments or bend > 8 * _BETWEEN * height):
@@ -283,9 +286,13 @@ def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[Sequenc
         raise NoResponse(_TOO_FAST)
     behind = max(_LEAST_BEHIND, ceil(fastest / _TURN))
     after = _at_instants(signals, end / behind, 2 * behind + 1)
-    if segments > count - 1:
-        fine = _at_instants(signals, end / (2 * segments), 2 * segments + 1)
-    return fine, [line[behind:] for line in after]
+    return _seen(signals, states, most // segments), _seen(signals, [line[behind:] for line in after], 1)
+
+
+def _seen(signals: Signals, states: list[list[int]], every: int) -> list[Sequence[int]]:
+    """Return the heights of every signal at some of the instants."""
+    some = [line[::every] for line in states]
+    return [course(row, some) for _, _, row, _ in signals.rows]
 
 
 def _second_differences(line: Sequence[int]) -> list[int]:
@@ -297,14 +304,14 @@ def _largest(line: Sequence[int]) -> int:
     return max(max(line), -min(line))  # noqa: PLW3301 - the other form copies the line
 
 
-def _at_instants(signals: Signals, step: Fraction, count: int) -> list[Sequence[int]]:
+def _at_instants(signals: Signals, step: Fraction, count: int) -> list[list[int]]:
+    """Return the components of the state."""
     from symobs.exact.time_functions.matrix_exponential import state_response  # noqa: PLC0415 - FLINT
 
     try:
-        states = state_response(signals.matrix, signals.start, step, count, _FINE)
+        return state_response(signals.matrix, signals.start, step, count, _FINE)
     except ArithmeticError:
         raise NoResponse(_TOO_WIDE) from None
-    return [course(row, states) for _, _, row, _ in signals.rows]
 
 
 def _stepped(signals: Signals, count: int) -> list[list[int]]:

@@ -259,7 +259,7 @@ def _over_its_field(matrix: Matrix) -> Matrix:
 
 
 #: Bits that are tried in turn until all enclosures are narrow.
-_BITS = (128, 256, 512, 1024, 2048, 4096)
+_BITS = (96, 256, 512, 1024, 2048, 4096)
 
 
 #: So many columns are enclosed before they are doubled as whole numbers.
@@ -310,7 +310,7 @@ def state_response(
     Raises `ArithmeticError` where the enclosures stay too wide.
     """
     for bits in _BITS:
-        with Precision(2 * bits):
+        with Precision(bits + bits // 2):
             found = _doubled(matrix, start, step, count, parts, bits)
         if found is not None:
             return found
@@ -327,7 +327,10 @@ def _doubled(
     and it is not larger than `most`.
     """
     kept, order, width = bits // 2, len(start), 64 * (bits // 32 + 3)
-    known = arb_mat([[_ball(entry) for entry in row] for row in matrix.rows])
+    if isinstance(matrix.table, fmpz_mat):
+        known = arb_mat(matrix.table) / arb(number_of(matrix.denominator))
+    else:
+        known = arb_mat([[_ball(entry) for entry in row] for row in matrix.rows])
     power = (known * arb(fmpq(step.numerator, step.denominator))).exp()
     block = arb_mat([[_ball(Scalar.of(part)) * parts] for part in start])
     while block.ncols() < min(_ENCLOSED, count):
@@ -347,7 +350,7 @@ def _doubled(
         fields = fmpz(1) << width * more
         ones_there = ones % fields
         high, mask = ones_there << (width - 1), (ones_there << (width - bits)) - ones_there
-        products = fmpz_mat(table) * fmpz_mat([[line] for line in lines])
+        products = fmpz_mat(table) * fmpz_mat([[line % fields] for line in lines])
         news = [((((x + high) % fields) >> bits) & mask) - (high >> bits) for x in products.entries()]
         lines = [line + (new << width * columns) for line, new in zip(lines, news, strict=True)]
         ones += ones_there << width * columns
