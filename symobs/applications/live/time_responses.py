@@ -382,10 +382,12 @@ def _last_above(band: int, line: Sequence[int], *, is_continuous: bool) -> int:
 
     It may bulge out of a segment by an eighth of the second difference.
     """
-    last = len(line) - 1
-    if is_continuous and _largest(line) < band // 2:  # no second difference is larger than four times the values
-        return 0
-    for k in range(last, 0, -1):
+    last = start = len(line) - 1
+    if is_continuous:  # no second difference is larger than four times the values
+        while start >= 0 and -band < 2 * line[start] < band - 1:
+            start -= 1
+        start = min(last, start + 2) if start >= 0 else 0
+    for k in range(start, 0, -1):
         a, b = line[k - 1], line[k]
         most = max(abs(a), abs(b))
         if is_continuous:
