@@ -85,15 +85,14 @@ class Matrix:
     @staticmethod
     def block(blocks: Sequence[Sequence[Matrix]]) -> Matrix:
         """Return the matrix of blocks of matching sizes."""
-        if all(isinstance(part.table, fmpz_mat) for line in blocks for part in line):
-            return _block_of_numbers(blocks)
-        rows: list[list[Scalar]] = []
         for line in blocks:
             heights = {part.shape[0] for part in line}
             if len(heights) != 1:
                 message = f"blocks of one row differ in height: {sorted(heights)}"
                 raise ValueError(message)
-            rows += [[entry for part in line for entry in part.rows[i]] for i in range(heights.pop())]
+        if all(isinstance(part.table, fmpz_mat) for line in blocks for part in line):
+            return _block_of_numbers(blocks)
+        rows = [[entry for part in line for entry in part.rows[i]] for line in blocks for i in range(line[0].shape[0])]
         return Matrix.of(rows, sum(part.shape[1] for part in blocks[0]))
 
     def within(self, field: Field) -> Matrix:
