@@ -189,11 +189,12 @@ class DampingCases(Result):
             return
         inner = inside_case(page, self.plant, {})
         write_branch(inner, self)
-        ruled_out = {condition.expression.numerator for condition in chosen}
         found = dict.fromkeys(_distance(case) for case in self.case_tree if case.when[0].operator == "==")
-        zeros = [zero for zero in found if zero not in ruled_out and -zero not in ruled_out]
+        signs = self.plant.symbols.signs
+        ruled_out = vanishing_factors((condition.expression for condition in chosen), signs)
+        zeros = vanishing_factors(map(self.plant.simplified, found), signs)
         steps = tuple(inner.steps)
-        if factors := vanishing_factors(map(self.plant.simplified, zeros), self.plant.symbols.signs):
+        if factors := [factor for factor in zeros if factor not in ruled_out]:
             apart = Conjunction(tuple(relation(factor, "!=", 0) for factor in factors))
             steps = (CaseStep(apart, (), steps),)  # inside, what is told rests on it
         page.steps += _narrowed(steps, chosen)
