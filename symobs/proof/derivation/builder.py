@@ -205,6 +205,8 @@ class Builder:
         self.environment = self.start
         self.steps: list[Step] = []
         self.forms: dict[str, str] = {}
+        #: What need not be said again in later cases.
+        self.told: set[str] = set()
         self.asked: frozenset[str] = frozenset()
         #: Whether the entries of gains have letters even where they are short.
         self.in_letters = False

@@ -233,7 +233,7 @@ def _narrowed(steps: tuple[Step, ...], conditions: Sequence[Condition]) -> tuple
 def inside_case(page: Builder, plant: StateSpace, substitution: Mapping[str, Scalar]) -> Builder:
     """Return a builder for the steps of a case, with the same environment."""
     inner = Builder(plant)
-    inner.start, inner.forms = page.start, page.forms
+    inner.start, inner.forms, inner.told = page.start, page.forms, page.told
     inner.environment = replace(page.environment, values=_moved(page.environment.values, substitution))
     return inner
 

@@ -168,7 +168,8 @@ def tell_exponential(page: Builder, found: Exponential, matrix: Matrix, *, answe
     count = sum(len(own) for _, _, own in found.parts)
     is_shown = not found.is_closed or 1 < count <= _SHOWN_SUM
     members: list[Term | Matrix] = [page.term(_sum_of_modes(found))] if is_shown else []
-    say = "exponential_sum" if members else "exponential_here"
+    say = "exponential_sum" if members and "exponential_sum" not in page.told else "exponential_here"
+    page.told.add(say)
     if found.is_closed:
         members.append(matrix)
     page.define("exp_At", *members, say=say, answer=answer, closing=False)
