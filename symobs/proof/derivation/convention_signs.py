@@ -46,7 +46,7 @@ def translated(derivation: Derivation, convention: Convention) -> Derivation:
         data = {value for name in "ABCD" if name in before.values for value in _both_ways(before.values[name])}
         written = {value for relation in relations(steps) for value in _values(relation, convention.turned)}
         steps = in_signs(steps, SignReversal(convention.turned, written - data))
-    made = replace(derivation, steps=steps)
+    made = derivation if steps == derivation.steps else replace(derivation, steps=steps)
     after = made.check()
     _hold_against(before, after, convention.turned)
     return set_apart(made, letters, {**LETTERS, **forms})
