@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping, Sequence
 from decimal import Decimal
+from functools import lru_cache
 from math import lcm, prod
 from typing import Any
 
@@ -246,6 +247,7 @@ def _in_base(matrix: Matrix, meanings: Mapping[str, Scalar]) -> Matrix:
     return matrix.substitute(images) if images else matrix
 
 
+@lru_cache(maxsize=256)
 def is_identity(value: Scalar) -> bool:
     """Return whether a polynomial vanishes because of what its functions are, as cos² θ + sin² θ − 1 does."""
     if not any(function_named(name) for name in value.names):

@@ -127,8 +127,18 @@ _ONE, _ZERO = Fraction(1), fmpq(0)
 
 def value_at(polynomial: Scalar, point: Mapping[str, Fraction]) -> Fraction:
     """Return the value of a polynomial at a rational point; raises KeyError where the point lacks one of its names."""
+    return _fraction(_value_at(polynomial, point))
+
+
+def sign_at(polynomial: Scalar, point: Mapping[str, Fraction]) -> int:
+    """Return the sign of a polynomial at a rational point: 1, 0 or −1."""
+    value = _value_at(polynomial, point)
+    return (value > 0) - (value < 0)
+
+
+def _value_at(polynomial: Scalar, point: Mapping[str, Fraction]) -> fmpq:
     names, ready = _prepared(polynomial)
-    return _fraction(ready(*[_ratio(point[name]) if name else _ZERO for name in names]))
+    return ready(*[_ratio(point[name]) if name else _ZERO for name in names])
 
 
 @lru_cache(maxsize=4096)

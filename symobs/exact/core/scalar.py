@@ -118,6 +118,10 @@ class Scalar:
         if field is self.field:
             return self
         below = self.denominator_part
+        if self.field is RATIONALS:
+            number = field.context.constant
+            bottom = field.one if below.is_one() else number(number_of(below))
+            return Scalar(field, number(number_of(self.numerator_part)), bottom)
         below = field.one if below.is_one() else field.lift(below, self.field)
         return Scalar(field, field.lift(self.numerator_part, self.field), below)
 
@@ -136,7 +140,8 @@ class Scalar:
     # -- arithmetic -----------------------------------------------------------------------------------------------
 
     def _pair(self, other: Scalar | int | Fraction) -> tuple[Scalar, Scalar, Field]:
-        other = Scalar.of(other)
+        if not isinstance(other, Scalar):
+            other = Scalar.of(other)
         if self.field is other.field:
             return self, other, self.field
         field = self.field | other.field

@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
-from symobs.exact.algebraic.root_location import all_to_the_left, value_at
+from symobs.exact.algebraic.root_location import all_to_the_left, sign_at, value_at
 from symobs.ground.dataclass import dataclass
 from symobs.stability.criteria.stability import bilinear, hurwitz_matrix, lienard_chipart
 
@@ -142,7 +142,7 @@ class CriticalPolynomials:
 
     def is_stable(self, point: Mapping[str, Fraction]) -> bool:
         """Return whether the polynomial is stable at a rational point, by the Routh array; False where it is undefined."""
-        return value_at(self.denominator, point) != 0 and all_to_the_left(self.at(point))
+        return sign_at(self.denominator, point) != 0 and all_to_the_left(self.at(point))
 
     @cached_property
     def conditions(self) -> tuple[Scalar, ...]:
@@ -152,8 +152,15 @@ class CriticalPolynomials:
         return tuple(dict.fromkeys(found))
 
     def at(self, point: Mapping[str, Fraction]) -> tuple[Fraction, ...]:
-        """Return the coefficients at a point."""
-        return tuple(value_at(c, point) for c in self.coefficients)
+        """Return the coefficients at a point; a cell is found, and then checked, at the same one."""
+        key = tuple(point.items())
+        if key not in self._known:
+            self._known[key] = tuple(value_at(c, point) for c in self.coefficients)
+        return self._known[key]
+
+    @cached_property
+    def _known(self) -> dict[tuple[tuple[str, Fraction], ...], tuple[Fraction, ...]]:
+        return {}
 
 
 def irreducible(values: Iterable[Scalar]) -> tuple[Scalar, ...]:

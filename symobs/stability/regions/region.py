@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from symobs.exact import Scalar, TooLarge
 from symobs.exact.algebraic.real_algebraic import rational_between, roots_of_scalar
-from symobs.exact.algebraic.root_location import value_at
+from symobs.exact.algebraic.root_location import sign_at
 from symobs.exact.cad.decomposition import (
     Branch,
     CriticalLine,
@@ -50,8 +50,8 @@ class RegionInequality(NamedTuple):
 
     def at(self, point: dict[str, Fraction]) -> bool:
         """Return whether the inequality holds at a rational point."""
-        value = value_at(self.polynomial, point)
-        return value > 0 if self.operator == ">" else value != 0
+        sign = sign_at(self.polynomial, point)
+        return sign > 0 if self.operator == ">" else sign != 0
 
 
 @dataclass
@@ -125,7 +125,7 @@ def _oriented(polynomials: Iterable[Scalar], samples: Sequence[Sample]) -> list[
     """Return the polynomials of constant sign at all stable samples, signed to be positive."""
     found = []
     for polynomial in polynomials:
-        signs = {value_at(polynomial, sample.point) > 0 for sample in samples if sample.stable}
+        signs = {sign_at(polynomial, sample.point) > 0 for sample in samples if sample.stable}
         if len(signs) == 1:
             found.append(RegionInequality(polynomial if signs.pop() else -polynomial))
     return found
