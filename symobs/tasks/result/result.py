@@ -17,7 +17,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, DerivationRejected, Undecided
 from symobs.proof.certificate.claims import BEYOND_LIMITS, UNREADABLE, Certificate, Claim, Statement, check_all
 from symobs.proof.derivation import translated
-from symobs.proof.derivation.builder import Builder, without_failing_cases
+from symobs.proof.derivation.builder import Builder, relation, without_failing_cases
 from symobs.system.conditions import Condition, joined, nonzero, vanishing_factors
 from symobs.tasks.result.output_methods import PLAIN, WebPage, detail_of, document_options, to_sympy
 from symobs.tasks.result.task_traits import TaskTraits
@@ -30,7 +30,9 @@ if TYPE_CHECKING:
     from symobs.exact import Matrix, Scalar
     from symobs.formula.convention import Convention
     from symobs.formula.figures import Picture
+    from symobs.formula.tree import Environment
     from symobs.proof.derivation import Derivation
+    from symobs.proof.derivation.builder import Member
     from symobs.system import StateSpace
     from symobs.tasks.result.control_systems import Controller
     from symobs.tasks.result.output_methods import PageOptions
@@ -40,6 +42,11 @@ if TYPE_CHECKING:
 Text: TypeAlias = Literal["fragment", "html", "html_fragment", "json", "latex", "markdown", "text", "numpy", "csv"]
 #: The formats that are programs.
 Code: TypeAlias = Literal["c", "matlab", "modelica", "python"]
+
+
+def equality(left: Member, right: Member, environment: Environment, says: str = "") -> Claim:
+    """Return the claim that two members are equal."""
+    return Claim(relation(left, right), environment, says)
 
 
 @dataclass

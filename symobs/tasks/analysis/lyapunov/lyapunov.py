@@ -39,7 +39,7 @@ from symobs.tasks.analysis.time_response.horizons import (
     symmetric,
     upper_entries,
 )
-from symobs.tasks.result import Case, Result, choose, method, page_of, task
+from symobs.tasks.result import Case, Result, choose, equality, method, page_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -104,25 +104,25 @@ class LyapunovSolution(Result):
         e = Environment(variable=self.plant.variable, values=values, signs=self.plant.symbols.signs)
         A, Q = e["A"], e["Q"]
         zero = Matrix.zeros(*self.weight.shape)
-        yield Claim(relation(Q, Q.T), e, "Q = Q.T")
-        yield Claim(relation(e["image"].apply("det"), e["determinant"]), e, "determinant of the image of A")
+        yield equality(Q, Q.T, e, "Q = Q.T")
+        yield equality(e["image"].apply("det"), e["determinant"], e, "determinant of the image of A")
         if is_unique:
             yield Claim(relation(e["determinant"], "!==", 0), e, "the determinant is not 0")
         if answer["X"] is not None:
             X = e["X"]
             moved = A @ X @ A.T - X if discrete else A @ X + X @ A.T
-            yield Claim(relation(moved, zero), e, "A*X*A.T - X = 0" if discrete else "A*X + X*A.T = 0")
-            yield Claim(relation(X, X.T), e, "X = X.T")
+            yield equality(moved, zero, e, "A*X*A.T - X = 0" if discrete else "A*X + X*A.T = 0")
+            yield equality(X, X.T, e, "X = X.T")
             yield Claim(relation(trace(self.weight, answer["X"]), "!==", 0), e, "trace of Q*X is not 0")
             return
         P = e["P"]
         said = "A.T*P*A - P = -Q" if discrete else "A.T*P + P*A = -Q"
-        yield Claim(relation(_moved(A, P, discrete=discrete), -Q), e, said)
-        yield Claim(relation(P, P.T), e, "P = P.T")
+        yield equality(_moved(A, P, discrete=discrete), -Q, e, said)
+        yield equality(P, P.T, e, "P = P.T")
         if answer["N"] is not None:
             N = e["N"]
-            yield Claim(relation(_moved(A, N, discrete=discrete), zero), e, said.replace("P", "N").replace("-Q", "0"))
-            yield Claim(relation(N, N.T), e, "N = N.T")
+            yield equality(_moved(A, N, discrete=discrete), zero, e, said.replace("P", "N").replace("-Q", "0"))
+            yield equality(N, N.T, e, "N = N.T")
             yield Claim(relation(N, "!==", zero), e, "N is not 0")
         yield from self._about_minors(e)
 

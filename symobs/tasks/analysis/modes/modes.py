@@ -47,7 +47,7 @@ from symobs.tasks.analysis.strata.strata import (
     holds_where,
     systems_of,
 )
-from symobs.tasks.result import Case, Result
+from symobs.tasks.result import Case, Result, equality
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -276,9 +276,9 @@ class ModeResult(Result):
         order, X = self.plant.order, self.test.answer["restricted"]
         e = Environment(variable=self.plant.variable, values={"A": A, "X": X, "chi": self.answer["polynomial"]})
         chi = e["chi"]
-        yield Claim(relation(e["A"].pencil.apply("det"), chi), e)
+        yield equality(e["A"].pencil.apply("det"), chi, e)
         form = Factored(Scalar.of(1), tuple((part.factor, part.power) for part in self.spectrum))
-        yield Claim(relation(chi, Term(formula_of_factored(form), e)), e, "chi = product of the factors")
+        yield equality(chi, Term(formula_of_factored(form), e), e, "chi = product of the factors")
         counts = len(self.answer["ranks"]), len(self.answer["constancy"])
         yield Claim(relation(*counts, len(self.spectrum)), e, "one rank for each factor")
         for part, found, where in self.parts:
@@ -286,7 +286,7 @@ class ModeResult(Result):
             if where is not None:
                 yield from constancy_claims(where, X, part.factor, order - found, self.plant)
         fixed = e["X"].pencil.apply("det") if X.shape[0] else Term(Literal(Scalar.of(1)), e)
-        yield Claim(relation(fixed, self.answer["fixed_polynomial"]), e, "det(s*I - X) = fixed_polynomial")
+        yield equality(fixed, self.answer["fixed_polynomial"], e, "det(s*I - X) = fixed_polynomial")
 
     def _rank_claims(self, part: Eigenvalues, found: int, e: Environment) -> Iterator[Claim]:
         order, where = self.plant.order, f"{part.relation} = 0"
@@ -296,11 +296,11 @@ class ModeResult(Result):
             hidden = self.test.answer["restricted"].shape[0]
             degree = len(part.roots)
             if not hidden:
-                yield Claim(relation(found, order), inner, f"rank = n where {where}, since ker O = 0")
+                yield equality(found, order, inner, f"rank = n where {where}, since ker O = 0")
                 return
             value, size = inner["X"].apply("phi_at"), hidden - degree * (order - found)
             if self.plant.is_stratum or not self.plant.relations:
-                yield Claim(relation(value.apply("rank"), size), inner, f"rank q(X) gives the rank where {where}")
+                yield equality(value.apply("rank"), size, inner, f"rank q(X) gives the rank where {where}")
             else:  # relations between functions of the parameters: not at each of their points, but in general
                 yield from self._general_rank_claims(value, size, f"q(X) where {where}")
             return
@@ -314,7 +314,7 @@ class ModeResult(Result):
         M = inner["M"]
         C = self.test.pair(self.plant)[1]
         pencil = [[inner["A"] - identity(order, inner) * part.value], [Term(Literal(C), inner)]]
-        yield Claim(relation(M, block(pencil)), inner, f"M = [A - lambda*I; C] where {where}")
+        yield equality(M, block(pencil), inner, f"M = [A - lambda*I; C] where {where}")
         yield Claim(
             relation(found, len(rows), len(columns)), inner, f"the minor has the order of the rank where {where}"
         )
@@ -327,9 +327,7 @@ class ModeResult(Result):
             yield Claim(relation(minor, operator, 0), inner, f"a minor of M is not zero where {where}")
         if kernel.shape[1]:
             N = Term(Literal(kernel), inner)
-            yield Claim(
-                relation(M @ N, Matrix.zeros(part.matrix.shape[0], kernel.shape[1])), inner, f"M*N = 0 where {where}"
-            )
+            yield equality(M @ N, Matrix.zeros(part.matrix.shape[0], kernel.shape[1]), inner, f"M*N = 0 where {where}")
             minor = Term(Literal(kernel.select(free, range(kernel.shape[1]))), inner).apply("det")
             yield Claim(relation(minor, operator, 0), inner, f"rank N = n - rank M where {where}")
 
@@ -341,12 +339,12 @@ class ModeResult(Result):
         yield Claim(relation(size, len(columns), len(rows), Q.shape[0] - len(vectors)), e, f"the rank of {says}")
         if size:
             minor = Term(Literal(Q.select(rows, columns)), e).apply("det")
-            yield Claim(relation(value, Q), e, f"the matrix {says}")
+            yield equality(value, Q, e, f"the matrix {says}")
             yield Claim(relation(minor, "!==", 0), e, f"a minor of {says} is not zero")
         if vectors:
             N = Matrix.of([[v[i, 0] for v in vectors] for i in range(Q.shape[0])], len(vectors))
             free = Term(Literal(N.select(independent_rows(N, ideal), range(len(vectors)))), e).apply("det")
-            yield Claim(relation(value @ Term(Literal(N), e), N * 0), e, f"the kernel of {says}")
+            yield equality(value @ Term(Literal(N), e), N * 0, e, f"the kernel of {says}")
             yield Claim(relation(free, "!==", 0), e, f"the basis of the kernel of {says}")
 
     # -- fields -------------------------------------------------------------------------------------------------------

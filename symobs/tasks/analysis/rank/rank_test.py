@@ -56,7 +56,7 @@ from symobs.tasks.analysis.strata.strata import (
     stratum_claims,
     stratum_of,
 )
-from symobs.tasks.result import Case, Result
+from symobs.tasks.result import Case, Result, equality
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -195,16 +195,16 @@ def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | No
     """Yield structure, kernel and rank from above, invariance; the kernel's claims hold `here`, on a stratum."""
     O, N, X = found["matrix"], found["kernel"], found["restricted"]
     order = O.shape[1]
-    yield Claim(relation(e["O"], e["upper"]), e, "the blocks are C, C*A, ..., C*A**(n - 1)")
+    yield equality(e["O"], e["upper"], e, "the blocks are C, C*A, ..., C*A**(n - 1)")
     witnesses = len(found["rows"]), len(found["columns"])
     yield Claim(relation(found["rank"], *witnesses), e, "the minor has the order of the rank")
     beside = N.shape[1], len(found["free"]), *X.shape
     yield Claim(relation(order - found["rank"], *beside), e, "the kernel has the dimension n - rank")
     if N.shape[1]:
         e, count = here or e, range(N.shape[1])
-        yield Claim(relation(e["O"] @ e["N"], Matrix.zeros(O.shape[0], len(count))), e, "M*N = 0")
+        yield equality(e["O"] @ e["N"], Matrix.zeros(O.shape[0], len(count)), e, "M*N = 0")
         yield Claim(relation(determinant_term(N.select(found["free"], count), e), "!==", 0), e, "rank N = n - rank M")
-        yield Claim(relation(e["A"] @ e["N"], e["N"] @ e["X"]), e, "A*N = N*X")
+        yield equality(e["A"] @ e["N"], e["N"] @ e["X"], e, "A*N = N*X")
 
 
 def rank_losses(found: Mapping[str, Any], signs: Mapping[str, str]) -> tuple[Scalar, ...]:
@@ -257,7 +257,7 @@ class RankResult(Result):
         """Yield that rank and kernel are right wherever the conditions of the piece hold, not only in general."""
         first = self.answer["rows"], self.answer["columns"]
         orders = {len(part) for minor in (first, *piece.minors) for part in minor}
-        yield Claim(relation(len(orders), 1), e, "the minors are of one order")
+        yield equality(len(orders), 1, e, "the minors are of one order")
         yield from minors_claim(self.answer["matrix"], (first, *piece.minors[1:]), e, "here")
         yield from kernel_claims(self.answer["kernel"], self.answer["restricted"], e, "here")
 

@@ -37,7 +37,7 @@ from symobs.tasks.analysis.rank.observability import power_rows
 from symobs.tasks.analysis.rank.rank_page import square_test
 from symobs.tasks.analysis.realization.modal_form import modal_basis
 from symobs.tasks.analysis.strata.strata import carried, strata
-from symobs.tasks.result import Case, Result, choose, method, task
+from symobs.tasks.result import Case, Result, choose, equality, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -101,12 +101,12 @@ class CanonicalForm(Result):
         m, answer, n = self.plant.matrices, self.answer, self.plant.order
         chi = answer["polynomial"]
         e = Environment(variable=self.plant.variable, values={"A": m.A, "chi": chi})
-        yield Claim(relation(e["A"].pencil.apply("det"), e["chi"]), e)
+        yield equality(e["A"].pencil.apply("det"), e["chi"], e)
         if answer["T"] is None:
             rank = self.test.answer["rank"] if self.test is not None else n
             yield Claim(relation(rank, "<", n), e, "the pair does not have full rank")
             absent = Scalar.of(sum(answer[key] is not None for key in ("inverse", *"ABCD")))
-            yield Claim(relation(absent, 0), e, "no form is given where there is none")
+            yield equality(absent, 0, e, "no form is given where there is none")
             return
         values = {"T": answer["T"], "S": answer["inverse"], "A_bar": answer["A"]}
         values |= {"B": m.B, "B_bar": answer["B"]} if m.has_input else {}
@@ -114,11 +114,11 @@ class CanonicalForm(Result):
         values |= {"D": m.D, "D_bar": answer["D"]} if m.has_input and m.has_output else {}
         e = e.extended_by(values=values)
         T, S = e["T"], e["S"]
-        yield Claim(relation(T @ S, identity(n, e)), e)
-        yield Claim(relation(e["A_bar"], T @ e["A"] @ S), e)
+        yield equality(T @ S, identity(n, e), e)
+        yield equality(e["A_bar"], T @ e["A"] @ S, e)
         for left, right in (("B_bar", T @ e["B"]), ("C_bar", e["C"] @ S), ("D_bar", e["D"])):
             if left in values:
-                yield Claim(relation(e[left], right), e)
+                yield equality(e[left], right, e)
         yield from self._form(e)
 
     def _form(self, e: Environment) -> Iterator[Claim]:
@@ -126,18 +126,18 @@ class CanonicalForm(Result):
         wanted = companion(self.answer["polynomial"].coefficients(self.plant.variable)[1:])
         last = Matrix.unit(n, n - 1)
         if self.kind == "controllable":
-            yield Claim(relation(A_bar, wanted), e, "A_bar has the coefficients of chi in its last row")
-            yield Claim(relation(e["B_bar"], last), e, "B_bar is the last unit vector")
+            yield equality(A_bar, wanted, e, "A_bar has the coefficients of chi in its last row")
+            yield equality(e["B_bar"], last, e, "B_bar is the last unit vector")
         elif self.kind == "observable":
-            yield Claim(relation(A_bar, wanted.T), e, "A_bar has the coefficients of chi in its last column")
-            yield Claim(relation(e["C_bar"], last.T), e, "C_bar is the last unit row")
+            yield equality(A_bar, wanted.T, e, "A_bar has the coefficients of chi in its last column")
+            yield equality(e["C_bar"], last.T, e, "C_bar is the last unit row")
         else:
             blocks = modal_matrix(self.answer["blocks"], self.plant.variable)
-            yield Claim(relation(A_bar, blocks), e, "A_bar consists of the blocks of the factors of chi")
+            yield equality(A_bar, blocks, e, "A_bar consists of the blocks of the factors of chi")
             product = Scalar.of(1)
             for factor, length in self.answer["blocks"]:
                 product = product * factor**length
-            yield Claim(relation(e["chi"], product), e, "chi = product of the polynomials of the blocks")
+            yield equality(e["chi"], product, e, "chi = product of the polynomials of the blocks")
 
     @property
     def existence(self) -> tuple[Scalar, ...]:

@@ -9,15 +9,15 @@ from symobs.exact import Factored, Scalar, factored, roots_of
 from symobs.formula.tree import Environment, Roots
 from symobs.formula.tree.term import Term
 from symobs.ground.dataclass import dataclass
-from symobs.proof.certificate.claims import Claim
-from symobs.proof.derivation.builder import Builder, relation
 from symobs.stability.criteria.stability import stability
 from symobs.tasks.analysis.page_parts import formula_of_factored, given, say_stability
-from symobs.tasks.result import Result, choose, method, task
+from symobs.tasks.result import Result, choose, equality, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.proof.certificate.claims import Claim
+    from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Name
 
@@ -37,8 +37,8 @@ class CharacteristicPolynomial(Result):
         pencil = e["A"].pencil
         form: Factored = self.answer["factors"]
         product = Term(formula_of_factored(form), e)
-        yield Claim(relation(pencil.apply("det"), e["chi"]), e)
-        yield Claim(relation(e["chi"], product), e, "chi = product of the factors")
+        yield equality(pencil.apply("det"), e["chi"], e)
+        yield equality(e["chi"], product, e, "chi = product of the factors")
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

@@ -19,7 +19,7 @@ from symobs.proof.derivation.builder import Builder, relation
 from symobs.tasks.analysis.modes.modes import TESTS
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.strata.strata import carried
-from symobs.tasks.result import Case, Result, choose, method, task
+from symobs.tasks.result import Case, Result, choose, equality, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -57,18 +57,14 @@ class Dual(Result):
         values |= {"D": m.D, "D_dual": answer["D"]} if m.has_input and m.has_output else {}
         e = Environment(variable=self.plant.variable, values=values)
         image = e["A"].T if self.sign > 0 else -e["A"].T
-        yield Claim(relation(e["A_dual"], image), e)
+        yield equality(e["A_dual"], image, e)
         for left, right in (("B_dual", "C"), ("C_dual", "B"), ("D_dual", "D")):
             if left in values:
-                yield Claim(relation(e[left], e[right].T), e)
+                yield equality(e[left], e[right].T, e)
         for kind, test in self.tests.items():
             inner = Environment(variable=e.variable, values={"M": test.answer["matrix"], "N": self._dual_matrix(kind)})
             signs = self._signs(self.plant.outputs if kind == "observability" else self.plant.inputs)
-            yield Claim(
-                relation(inner["N"], inner["M"].T @ Term(Literal(signs), inner)),
-                inner,
-                f"dual of {kind}",
-            )
+            yield equality(inner["N"], inner["M"].T @ Term(Literal(signs), inner), inner, f"dual of {kind}")
             ranks = answer[f"{kind}_rank"], answer[f"dual_{_OTHER[kind]}_rank"], test.answer["rank"]
             yield Claim(relation(*ranks), inner, f"both ranks of {kind}")
 

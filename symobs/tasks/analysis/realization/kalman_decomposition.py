@@ -24,7 +24,7 @@ from symobs.tasks.analysis.page_parts import case_steps, factored_form, given, i
 from symobs.tasks.analysis.rank.observability import power_rows
 from symobs.tasks.analysis.realization.canonical_form import BLOCKS, basis, minor_of, transfer_matrix
 from symobs.tasks.analysis.strata.strata import strata
-from symobs.tasks.result import Case, Result, choose, method, task
+from symobs.tasks.result import Case, Result, choose, equality, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -95,16 +95,16 @@ class Decomposition(Result):
         values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D} | {name: answer[key] for name, key in names.items()}
         e = Environment(variable=self.plant.variable, values=values)
         T, S = e["T"], e["S"]
-        yield Claim(relation(T @ S, identity(n, e)), e)
-        yield Claim(relation(e["A_bar"], T @ e["A"] @ S), e)
+        yield equality(T @ S, identity(n, e), e)
+        yield equality(e["A_bar"], T @ e["A"] @ S, e)
         if m.has_input:
-            yield Claim(relation(e["B_bar"], T @ e["B"]), e)
+            yield equality(e["B_bar"], T @ e["B"], e)
         if m.has_output:
-            yield Claim(relation(e["C_bar"], e["C"] @ S), e)
+            yield equality(e["C_bar"], e["C"] @ S, e)
         if self._is_whole:
-            yield Claim(relation(e["D_bar"], e["D"]), e)
-        yield Claim(relation(Scalar.of(sum(self.dimensions)), n), e, "the parts make up the whole")
-        yield Claim(relation(answer["minimal_order"], self.dimensions[0]), e, "the order is that of the first part")
+            yield equality(e["D_bar"], e["D"], e)
+        yield equality(Scalar.of(sum(self.dimensions)), n, e, "the parts make up the whole")
+        yield equality(answer["minimal_order"], self.dimensions[0], e, "the order is that of the first part")
         for to, out in ZEROS:
             yield from self._zero("A_bar", self.part(to), self.part(out), e)
         yield from self._zero("B_bar", self.part(2, 3), range(self.plant.inputs), e)
@@ -118,7 +118,7 @@ class Decomposition(Result):
         if rows and columns:
             entries = Term(Literal(e.value(name).select(rows, columns)), e)  # type: ignore[union-attr]
             says = f"{name}: rows {rows} do not depend on columns {columns}"
-            yield Claim(relation(entries, Matrix.zeros(len(rows), len(columns))), e, says)
+            yield equality(entries, Matrix.zeros(len(rows), len(columns)), e, says)
 
     def _minors(self, e: Environment) -> Iterator[Claim]:
         """Yield that the parts that should be reached are controllable, and those that should be seen observable."""
@@ -149,12 +149,12 @@ class Decomposition(Result):
         e = e.extended_by(values={"P": self.answer["transfer_function"], "A_co": A1, "B_co": B1, "C_co": C1})
         P = e["P"]
         whole = e["A"].pencil.inverse
-        yield Claim(relation(P, e["C"] @ whole @ e["B"] + e["D"]), e)
+        yield equality(P, e["C"] @ whole @ e["B"] + e["D"], e)
         if first:
             own = e["A_co"].pencil.inverse
-            yield Claim(relation(P, e["C_co"] @ own @ e["B_co"] + e["D"]), e)
+            yield equality(P, e["C_co"] @ own @ e["B_co"] + e["D"], e)
         else:
-            yield Claim(relation(P, e["D"]), e)
+            yield equality(P, e["D"], e)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:

@@ -31,7 +31,7 @@ from symobs.tasks.analysis.rank.rank_test import power_rows
 from symobs.tasks.analysis.realization.canonical_form import basis
 from symobs.tasks.analysis.realization.canonical_form import transfer_matrix as reduced
 from symobs.tasks.analysis.strata.loci import distance_from
-from symobs.tasks.result import Case, Result, choose, method, task
+from symobs.tasks.result import Case, Result, choose, equality, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -57,7 +57,7 @@ class TransferFunction(Result):
         response = e["C"] @ resolvent @ e["B"]
         if m.has_feedthrough:
             response = response + e["D"]
-        yield Claim(relation(e["P"], response), e)
+        yield equality(e["P"], response, e)
         if self.plant.equations and self.order:
             yield self._smallest(e)
 

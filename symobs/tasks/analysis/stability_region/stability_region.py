@@ -13,7 +13,6 @@ from symobs.formula.tree import Environment
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.proof.certificate.claims import Claim, Statement
-from symobs.proof.derivation.builder import relation
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
 from symobs.stability.criteria.routh_table import RouthTable, is_routh_table, routh_table
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
@@ -27,7 +26,7 @@ from symobs.stability.regions.region_check import are_parts, is_region
 from symobs.system import StateSpace, Symbols, read_scalar
 from symobs.system.conditions import Condition, sign_of
 from symobs.system.specification import read_gain, read_names
-from symobs.tasks.result import Case, Result, choose, method, task
+from symobs.tasks.result import Case, Result, choose, equality, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -436,8 +435,8 @@ class StabilityRegion(Result):
         for other in moved[1:]:
             product = product @ other.apply("det")
         if plant.polynomial is not None:
-            return Claim(relation(e["chi"], plant.polynomial), e)
-        return Claim(relation(product, e["chi"]), e)
+            return equality(e["chi"], plant.polynomial, e)
+        return equality(product, e["chi"], e)
 
     # -- what follows ------------------------------------------------------------------------------------------------
 

@@ -40,7 +40,7 @@ from symobs.tasks.analysis.strata.rank_stratification import (
     node_of,
     with_restriction,
 )
-from symobs.tasks.result import Case
+from symobs.tasks.result import Case, equality
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -529,7 +529,7 @@ def constancy_claims(
     if X.shape[0] == dimension or not X.names | factor.names > {plant.variable}:
         return
     e = Environment(signs=signs)
-    yield Claim(relation(len(orders), 1), e, "the minors are of one order")
+    yield equality(len(orders), 1, e, "the minors are of one order")
     yield Claim(relation(*orders, X.shape[0] - dimension), e, "the minors of X - lambda*I have the order of its rank")
     matrix, q = shifted(X, factor, plant.variable), in_eigenvalue(factor, plant.variable)
     at_roots = (q,) if factor.degree(plant.variable) > 1 else ()

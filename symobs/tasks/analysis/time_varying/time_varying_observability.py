@@ -38,7 +38,7 @@ from symobs.tasks.analysis.time_varying.time_varying_solution import (
     reject_sizes_and_names,
 )
 from symobs.tasks.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME, in_time
-from symobs.tasks.result import Case, Result, choose, method, task_in_time
+from symobs.tasks.result import Case, Result, choose, equality, method, task_in_time
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -135,13 +135,13 @@ class TimeVaryingObservability(Result):
         meant = {name: value for name, value in values.items() if value is not None}
         named, zero = dependences([*meant.values(), *self.closed_forms], self.asked_for)
         e = Environment(TIME, meant, signs=signs, coefficients=named, relations=zero)
-        yield Claim(relation(len(answer["stack"]), order), e, "the stack has n blocks")
-        yield Claim(relation(e["N_0"], e["C"]), e)
+        yield equality(len(answer["stack"]), order, e, "the stack has n blocks")
+        yield equality(e["N_0"], e["C"], e)
         for k in range(order - 1):
             row = e[f"N_{k}"]
-            yield Claim(relation(e[f"N_{k + 1}"], row @ e["A"] + row.derivative), e)
+            yield equality(e[f"N_{k + 1}"], row @ e["A"] + row.derivative, e)
         stacked = block([[e[f"N_{k}"]] for k in range(order)])
-        yield Claim(relation(e["O"], stacked), e, "O = [N_0; N_1; ...]")
+        yield equality(e["O"], stacked, e, "O = [N_0; N_1; ...]")
         yield from self._rank_claims(e)
         if answer["transition_matrix"] is not None:
             yield from self._transition_claims(e)
@@ -165,8 +165,8 @@ class TimeVaryingObservability(Result):
                 yield Claim(relation(instant, "!=", 0), e, f"it is not 0 at t = {answer['point']}")
         if hidden:
             A, C, states, X = (e[name] for name in ("A", "C", "V", "X"))
-            yield Claim(relation(C @ states, Matrix.zeros(self.plant.outputs, hidden)), e, "C*V = 0")
-            yield Claim(relation(A @ states - states.derivative, states @ X), e, "A*V - V' = V*X")
+            yield equality(C @ states, Matrix.zeros(self.plant.outputs, hidden), e, "C*V = 0")
+            yield equality(A @ states - states.derivative, states @ X, e, "A*V - V' = V*X")
             yield Claim(
                 relation(determinant_term(V.select(answer["free"], range(hidden)), e), "!==", 0), e, "rank V = n - rank"
             )
@@ -174,7 +174,7 @@ class TimeVaryingObservability(Result):
     def _inside_claims(self, e: Environment) -> Iterator[Claim]:
         """Yield that the instant which shows the rank is one of the interval."""
         asked, point = self.asked_for, Term(Literal(self.answer["point"]), e)
-        yield Claim(relation(point.derivative, 0), e, "the instant is one")
+        yield equality(point.derivative, 0, e, "the instant is one")
         if asked.interval is not None:
             e = replace(e, positive=(asked.end - asked.start,))
             yield Claim(relation(point, ">=", asked.start), e, "the instant is not before the interval")
@@ -183,40 +183,40 @@ class TimeVaryingObservability(Result):
     def _transition_claims(self, e: Environment) -> Iterator[Claim]:
         answer, order, asked = self.answer, self.plant.order, self.asked_for
         Phi = e["Phi"]
-        yield Claim(relation(Phi.derivative, e["A"] @ Phi), e, "d/dt Phi(t, t0) = A*Phi(t, t0)")
-        yield Claim(relation(Phi.at(TIME, Scalar.symbol(START)), identity(order, e)), e, "Phi(t0, t0) = I")
+        yield equality(Phi.derivative, e["A"] @ Phi, e, "d/dt Phi(t, t0) = A*Phi(t, t0)")
+        yield equality(Phi.at(TIME, Scalar.symbol(START)), identity(order, e), e, "Phi(t0, t0) = I")
         seen = e["C"] @ Phi.at(START, asked.start)
         hidden = order - answer["rank"]
         if answer["kernel"] is None and _has_value(answer["transition_matrix"], asked.start):
             reject("the states that are never seen are missing")
         if answer["kernel"] is not None:
-            yield Claim(relation(answer["kernel"].shape[1], hidden), e, "there are n - rank vectors v")
+            yield equality(answer["kernel"].shape[1], hidden, e, "there are n - rank vectors v")
         if answer["kernel"] is not None and hidden:
             v = e["v"]
-            yield Claim(relation(v.derivative, Matrix.zeros(order, hidden)), e, "v does not depend on t")
-            yield Claim(relation(seen @ v, Matrix.zeros(self.plant.outputs, hidden)), e, "C*Phi*v = 0")
+            yield equality(v.derivative, Matrix.zeros(order, hidden), e, "v does not depend on t")
+            yield equality(seen @ v, Matrix.zeros(self.plant.outputs, hidden), e, "C*Phi*v = 0")
             yield Claim(relation((v.T @ v).apply("det"), "!==", 0), e, "the vectors v are independent")
         if answer["gramian_in_time"] is not None:
             G = e["G"]
-            yield Claim(relation(G.derivative, seen.T @ seen), e, "G' = Phi.T*C.T*C*Phi")
-            yield Claim(relation(G.at(TIME, asked.start), Matrix.zeros(order, order)), e, "G(start) = 0")
-            yield Claim(relation(answer["gramian"], G.at(TIME, asked.end)), e, "the Gramian is G(end)")
+            yield equality(G.derivative, seen.T @ seen, e, "G' = Phi.T*C.T*C*Phi")
+            yield equality(G.at(TIME, asked.start), Matrix.zeros(order, order), e, "G(start) = 0")
+            yield equality(answer["gramian"], G.at(TIME, asked.end), e, "the Gramian is G(end)")
 
     def _state_claims(self, e: Environment) -> Iterator[Claim]:
         m, start = self.plant.matrices, self.asked_for.start
         f, rate = e["f"], e["A"] @ e["f"]
         if "u" in e.values:
             rate = rate + e["B"] @ e["u"]
-        yield Claim(relation(f.derivative, rate), e, "f' = A*f + B*u")
-        yield Claim(relation(f.at(TIME, start), Matrix.zeros(self.plant.order, 1)), e, "f(start) = 0")
+        yield equality(f.derivative, rate, e, "f' = A*f + B*u")
+        yield equality(f.at(TIME, start), Matrix.zeros(self.plant.order, 1), e, "f(start) = 0")
         if self.answer["x0"] is None:
             yield from self._refusal_claims(e)
         else:
             state = e["Phi"].at(START, start) @ e["x_0"] + f
             seen = e["C"] @ state
             seen = seen + e["D"] @ e["u"] if "u" in e.values and m.has_feedthrough else seen
-            yield Claim(relation(e["x_0"].derivative, Matrix.zeros(self.plant.order, 1)), e, "x0 is constant")
-            yield Claim(relation(seen, e["y"]), e, "C*(Phi*x0 + f) + D*u = y")
+            yield equality(e["x_0"].derivative, Matrix.zeros(self.plant.order, 1), e, "x0 is constant")
+            yield equality(seen, e["y"], e, "C*(Phi*x0 + f) + D*u = y")
 
     def _refusal_claims(self, e: Environment) -> Iterator[Claim]:
         """Yield W x = ∫ Φᵀ Cᵀ ξ, which has one solution, for a state x whose output is another one."""
@@ -230,8 +230,8 @@ class TimeVaryingObservability(Result):
         limits = (TIME, asked.start, asked.end)
         whole = Term(Integral((seen.T @ xi).formula, Literal(answer["moment"]), *limits), e)
         yield Claim(relation(Term(Literal(W), e).apply("det"), "!==", 0), e, "det W is not 0")
-        yield Claim(relation(Term(Literal(W), e) @ state, whole), e, "W*x = integral of Phi.T*C.T*(y - C*f - D*u)")
-        yield Claim(relation(state.derivative, Matrix.zeros(self.plant.order, 1)), e, "x is constant")
+        yield equality(Term(Literal(W), e) @ state, whole, e, "W*x = integral of Phi.T*C.T*(y - C*f - D*u)")
+        yield equality(state.derivative, Matrix.zeros(self.plant.order, 1), e, "x is constant")
         yield Claim(relation(xi, "!==", seen @ state), e, "the output of x is not the one measured")
 
     # -- what follows ------------------------------------------------------------------------------------------------

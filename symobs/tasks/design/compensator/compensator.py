@@ -10,8 +10,6 @@ from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, together
-from symobs.proof.certificate.claims import Claim
-from symobs.proof.derivation.builder import relation
 from symobs.system.specification import (
     GainText,
     Name,
@@ -28,11 +26,12 @@ from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import half_of, places_where
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.reduced_order.reduced_order_observer import completed
-from symobs.tasks.result import Result, choose, method, poles_of, task
+from symobs.tasks.result import Result, choose, equality, method, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from symobs.proof.certificate.claims import Claim
     from symobs.system import StateSpace
     from symobs.tasks.analysis.strata.strata import Place
     from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrderCompensator
@@ -79,7 +78,7 @@ class CompensatorDesign(OutputFeedback):
             moved = A.pencil + B @ K + L @ C
             if self.plant.matrices.has_feedthrough:
                 moved = moved - L @ D @ K
-            yield Claim(relation(F, K @ moved.inverse @ L), e)
+            yield equality(F, K @ moved.inverse @ L, e)
 
     @property
     def _estimator_places(self) -> tuple[Place, ...]:

@@ -15,8 +15,6 @@ from symobs.formula.tree.term import block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.ground.on_demand import OnDemand
-from symobs.proof.certificate.claims import Claim
-from symobs.proof.derivation.builder import relation
 from symobs.system.conditions import Condition, joined, nonzero, vanishing_factors
 from symobs.tasks.analysis.strata.strata import places, solved
 from symobs.tasks.design.compensator.output_feedback import Asked, OutputFeedback
@@ -24,10 +22,12 @@ from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import half_of
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver, reduced_observer_of
+from symobs.tasks.result import equality
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from symobs.proof.certificate.claims import Claim
     from symobs.system import StateSpace
     from symobs.tasks.analysis.strata.strata import Place
     from symobs.tasks.result import Case
@@ -80,17 +80,17 @@ class MinimalOrderCompensator(OutputFeedback):
         direct, rest = split(self.answer["K"], self.estimator)
         e = e.extended_by(values={"N": direct, "K_2": rest})
         K, M, N, K_2, D, F = (e[name] for name in ("K", "M_z", "N", "K_2", "D", "F"))
-        yield Claim(relation(K @ M, block([[N, K_2]])), e, "K*M = [N, K_2]")
+        yield equality(K @ M, block([[N, K_2]]), e, "K*M = [N, K_2]")
         one = identity(self.plant.inputs, e)
         if not self.exists:
-            yield Claim(relation((one - N @ D).apply("det"), 0), e, "det(I - N*D) = 0")
+            yield equality((one - N @ D).apply("det"), 0, e, "det(I - N*D) = 0")
             return
         F_z, G, H = (e[name] for name in ("F_z", "G_z", "H_z"))
         resolvent = F_z.pencil.inverse
         loop = one + K_2 @ resolvent @ G
         if self.plant.matrices.has_feedthrough:
             loop = loop - N @ D
-        yield Claim(relation(F, loop.inverse @ (K_2 @ resolvent @ H + N)), e)
+        yield equality(F, loop.inverse @ (K_2 @ resolvent @ H + N), e)
 
     @cached_property
     def well_posedness(self) -> Scalar:

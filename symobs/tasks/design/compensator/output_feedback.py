@@ -21,7 +21,7 @@ from symobs.tasks.analysis.page_parts import cancelled, over
 from symobs.tasks.analysis.strata.strata import places, solved
 from symobs.tasks.design.gain.gain_cases import places_where
 from symobs.tasks.design.gain.gain_design import letters_of
-from symobs.tasks.result import Case, Result
+from symobs.tasks.result import Case, Result, equality
 from symobs.tasks.result.control_systems import Controller
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ class OutputFeedback(Result):
                 raise CertificateRejected(f"{design.letter} is a gain for another plant")
             own, certified = self.answer[design.letter], design.answer[design.letter]
             if own is not certified:
-                yield Claim(relation(own, certified), environment, f"{design.letter} is the certified gain")
+                yield equality(own, certified, environment, f"{design.letter} is the certified gain")
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:
@@ -298,7 +298,7 @@ class OutputFeedback(Result):
         values = {"P": self.plant_function, "F": self.answer["F"], "G_cl": whole}
         e = Environment(variable=variable, values=values)
         P, F, G = (e[name] for name in ("P", "F", "G_cl"))
-        check(Claim(relation((identity(self.plant.outputs, e) + P @ F) @ G, P), e.with_relations(self.plant.relations)))
+        check(equality((identity(self.plant.outputs, e) + P @ F) @ G, P, e.with_relations(self.plant.relations)))
         return tuple(tuple(factored(entry, variable, monic=False) for entry in row) for row in whole.rows)
 
     @cached_property
@@ -313,7 +313,7 @@ class OutputFeedback(Result):
         form = over(numerator, own, polynomial) if kept else factored(value, self.plant.variable, monic=False)
         e = Environment(variable=self.plant.variable, values={"P": P, "F": F, "G_cl": value})
         P_, F_, one = e["P"], e["F"], Term(relation(1, 1).members[0], e)
-        check(Claim(relation(e["G_cl"], P_ / (one + P_ @ F_)), e.with_relations(self.plant.relations)))
+        check(equality(e["G_cl"], P_ / (one + P_ @ F_), e.with_relations(self.plant.relations)))
         return form
 
     @cached_property
@@ -326,7 +326,7 @@ class OutputFeedback(Result):
         kept = value.denominator.degree(variable) == polynomial.value.degree(variable)
         e = Environment(variable=variable, values={"P": self.plant_function, "F": self.answer["F"], "G_r": value})
         P, F, one = e["P"], e["F"], Term(relation(1, 1).members[0], e)
-        check(Claim(relation(e["G_r"], P @ F / (one + P @ F)), e.with_relations(self.plant.relations)))
+        check(equality(e["G_r"], P @ F / (one + P @ F), e.with_relations(self.plant.relations)))
         return cancelled(numerator, own, polynomial, variable) if kept else factored(value, variable, monic=False)
 
     @cached_property

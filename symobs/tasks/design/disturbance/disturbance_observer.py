@@ -17,7 +17,6 @@ from symobs.formula.tree import Environment, Literal, Roots
 from symobs.formula.tree.term import Term, block
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
-from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.system import StateSpace
 from symobs.system.conditions import joined
@@ -32,7 +31,7 @@ from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
 from symobs.tasks.design.gain.gain_page import say_as_required
 from symobs.tasks.design.page_parts import caution_poles, define_gain, say_unassignable
-from symobs.tasks.result import Case, Result, choose, method, page_of, poles_of, task
+from symobs.tasks.result import Case, Result, choose, equality, method, page_of, poles_of, task
 from symobs.tasks.result.control_systems import Controller
 
 if TYPE_CHECKING:
@@ -40,6 +39,7 @@ if TYPE_CHECKING:
 
     from symobs.exact import Scalar
     from symobs.formula.tree import Relation
+    from symobs.proof.certificate.claims import Certificate, Claim
     from symobs.system.conditions import Condition
     from symobs.system.specification import MatrixText, Name, Poles, PolynomialText
 
@@ -114,15 +114,15 @@ class DisturbanceObserver(Result):
         gains = {} if L_x is None else {"L_x": L_x, "L_w": L_w}
         e = Environment(variable=plant.variable, values=values | gains)
         whole = block(extended(e, plant, self.exosystem))
-        yield Claim(relation(whole, self.inner.plant.matrices.A), e, "the inner observer is one for A_hat")
-        yield Claim(relation(e["phi"], self.desired.polynomial), e, "the polynomial is the one asked for")
+        yield equality(whole, self.inner.plant.matrices.A, e, "the inner observer is one for A_hat")
+        yield equality(e["phi"], self.desired.polynomial, e, "the polynomial is the one asked for")
         if L_x is not None:
             both = block([[e["L_x"]], [e["L_w"]]])
-            yield Claim(relation(both, self.inner.answer["L"]), e, "[L_x; L_w] = L")
+            yield equality(both, self.inner.answer["L"], e, "[L_x; L_w] = L")
             seen = block([[e["L_x"] @ e["C"]], [e["L_w"] @ e["C"]]])
             wide = Matrix.block([[Matrix.identity(plant.order), Matrix.zeros(plant.order, self.exosystem.order)]])
             pencil = whole.pencil + seen @ Term(Literal(wide), e)
-            yield Claim(relation(pencil.apply("det"), e["phi"]), e, "det(s*I - A_hat + L*C_hat) = phi")
+            yield equality(pencil.apply("det"), e["phi"], e, "det(s*I - A_hat + L*C_hat) = phi")
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:

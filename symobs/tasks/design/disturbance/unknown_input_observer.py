@@ -40,7 +40,7 @@ from symobs.tasks.design.page_parts import (
     stand_in_line,
     summed,
 )
-from symobs.tasks.result import Case, Result, choose, method, page_of, task
+from symobs.tasks.result import Case, Result, choose, equality, method, page_of, task
 from symobs.tasks.result.control_systems import Controller, observer_of
 
 if TYPE_CHECKING:
@@ -164,34 +164,32 @@ class UnknownInputObserver(Result):
         known = {name: value for name, value in answer.items() if value is not None}
         e = Environment(variable=plant.variable, values=values | known)
         A, C, E = (e[name] for name in ("A", "C", "E_d"))
-        yield Claim(relation(e["phi"], self.desired.polynomial), e, "the polynomial is the one asked for")
+        yield equality(e["phi"], self.desired.polynomial, e, "the polynomial is the one asked for")
         if inner is None:
             w = e["w"]
-            yield Claim(relation(C @ E @ w, Matrix.zeros(plant.outputs, 1)), e, "C*E*w = 0")
+            yield equality(C @ E @ w, Matrix.zeros(plant.outputs, 1), e, "C*E*w = 0")
             yield Claim(relation(E @ w, "!==", Matrix.zeros(plant.order, 1)), e, "E*w is not 0")
             return
         H, T = e["H"], e["T"]
-        yield Claim(
-            relation((H @ C - identity(plant.order, e)) @ E, Matrix.zeros(*self.disturbance_input.shape)),
-            e,
-            "(H*C - I)*E = 0",
+        yield equality(
+            (H @ C - identity(plant.order, e)) @ E, Matrix.zeros(*self.disturbance_input.shape), e, "(H*C - I)*E = 0"
         )
-        yield Claim(relation(T, identity(plant.order, e) - H @ C), e, "T = I - H*C")
-        yield Claim(relation(T @ A, inner.plant.matrices.A), e, "the inner gain is one for T*A")
-        yield Claim(relation(C, inner.plant.matrices.C), e, "the inner gain is one for C")
-        yield Claim(relation(e["phi"], inner.answer["polynomial"]), e, "the inner gain is one for phi(s)")
+        yield equality(T, identity(plant.order, e) - H @ C, e, "T = I - H*C")
+        yield equality(T @ A, inner.plant.matrices.A, e, "the inner gain is one for T*A")
+        yield equality(C, inner.plant.matrices.C, e, "the inner gain is one for C")
+        yield equality(e["phi"], inner.answer["polynomial"], e, "the inner gain is one for phi(s)")
         if answer["L"] is None:
             return
         L, F, B_y = (e[name] for name in ("L", "F", "B_y"))
-        yield Claim(relation(F, T @ A - L @ C), e, "F = T*A - L*C")
-        yield Claim(relation(B_y, L + F @ H), e, "B_y = L + F*H")
-        yield Claim(relation(T @ A - F @ T, B_y @ C), e, "T*A - F*T = B_y*C")
+        yield equality(F, T @ A - L @ C, e, "F = T*A - L*C")
+        yield equality(B_y, L + F @ H, e, "B_y = L + F*H")
+        yield equality(T @ A - F @ T, B_y @ C, e, "T*A - F*T = B_y*C")
         if answer["B_u"] is not None:
             driven = T @ e["B"]
             driven = driven - B_y @ e["D"] if m.has_feedthrough else driven
-            yield Claim(relation(e["B_u"], driven), e, "B_u = T*B - B_y*D")
+            yield equality(e["B_u"], driven, e, "B_u = T*B - B_y*D")
         pencil = F.pencil
-        yield Claim(relation(pencil.apply("det"), e["phi"]), e, "det(s*I - F) = phi(s)")
+        yield equality(pencil.apply("det"), e["phi"], e, "det(s*I - F) = phi(s)")
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:

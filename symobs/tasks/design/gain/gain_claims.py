@@ -11,6 +11,7 @@ from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
 from symobs.tasks.design.pole_placement.zero_pattern import with_zeros
+from symobs.tasks.result import equality
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -29,13 +30,13 @@ def unassignable_claims(pair: ObserverPair, polynomial: Scalar) -> Iterator[Clai
     e = Environment(variable=pair.variable, values=values)
     A, C, kernel, restricted = (e[name] for name in ("A", "C", "N", "X"))
     pencil = restricted.pencil
-    yield Claim(relation(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1])), e, "C*N = 0")
-    yield Claim(relation(A @ kernel, kernel @ restricted), e, "A*N = N*X")
+    yield equality(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1]), e, "C*N = 0")
+    yield equality(A @ kernel, kernel @ restricted, e, "A*N = N*X")
     yield Claim(relation(N.shape[1], X.shape[0], "!==", 0), e, "X has the order of the kernel")
     yield _of_full_rank(pair, e)
-    yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
+    yield equality(pencil.apply("det"), pair.fixed_polynomial, e, "det(s*I - X) = fixed polynomial")
     phi = e["phi"]
-    yield Claim(relation(phi, pair.fixed_polynomial * quotient + rest), e, "phi = fixed polynomial * q + r")
+    yield equality(phi, pair.fixed_polynomial * quotient + rest, e, "phi = fixed polynomial * q + r")
     yield Claim(relation(Term(Literal(rest), e), "!==", 0), e, "r is not zero")
 
 
@@ -51,7 +52,7 @@ def claims_of_kernel_family(
     e = Environment(variable=pair.variable)
     free = Matrix.column([Scalar.symbol(name) for name in names])
     expected = (gain + transpose_for_task(pair.kernel @ free)).normal()
-    yield Claim(relation(general, expected), e, f"{letter_of_gain} is free along the kernel")
+    yield equality(general, expected, e, f"{letter_of_gain} is free along the kernel")
     yield _of_full_rank(pair, e)
 
 
@@ -79,7 +80,7 @@ def excluded_claims(
     e = Environment(variable=pair.variable, relations=tuple(equations))
     for value in needed or ():
         says = f"with zeros there, {value} lies in the ideal of the coefficients of det(s*I - A + L*C) - phi(s)"
-        yield Claim(relation(value, 0), e, says if letter_of_gain == "L" else says.replace("L*C", "B*K"))
+        yield equality(value, 0, e, says if letter_of_gain == "L" else says.replace("L*C", "B*K"))
         if not value.is_constant:
             yield Claim(relation(value, "!==", 0), Environment(variable=pair.variable), f"{value} is not 0")
 
@@ -93,4 +94,4 @@ def has_real_root(found: RootGain, e: Environment) -> Claim:
 def zeros_claim(gain: Matrix, zero: Places, letter_of_gain: str, e: Environment) -> Claim:
     """Return the claim that a gain has its zeros in the given places."""
     entries = Matrix.row([gain[i, j] for i, j in zero])
-    return Claim(relation(entries, Matrix.zeros(1, len(zero))), e, f"zeros in {letter_of_gain} as asked for")
+    return equality(entries, Matrix.zeros(1, len(zero)), e, f"zeros in {letter_of_gain} as asked for")

@@ -41,7 +41,7 @@ from symobs.tasks.design.gain.gain_kind import (
 from symobs.tasks.design.pole_placement.multiple_outputs import Family, MultiOutputPair, decoupled_claim, decoupled_gain
 from symobs.tasks.design.pole_placement.sylvester import fresh_names
 from symobs.tasks.design.pole_placement.zero_pattern import RootGain, equations_for, obstacles, unknown_gain, with_zeros
-from symobs.tasks.result import Result, choose
+from symobs.tasks.result import Result, choose, equality
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -193,7 +193,7 @@ class GainDesign(Result):
             raise CertificateRejected(f"a design has a gain {self.letter} exactly where its kind says so")
         e = Environment(variable=self.plant.variable)
         if kind.desired is not None and phi is not kind.desired.polynomial:
-            yield Claim(relation(phi, kind.desired.polynomial), e, "the polynomial is the one asked for")
+            yield equality(phi, kind.desired.polynomial, e, "the polynomial is the one asked for")
         match kind:
             case UnassignableGain():
                 yield from unassignable_claims(self.pair, phi)

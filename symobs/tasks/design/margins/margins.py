@@ -19,7 +19,7 @@ from symobs.formula.tree.term import Term, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
-from symobs.proof.derivation.builder import Builder, predicate, relation
+from symobs.proof.derivation.builder import Builder, predicate
 from symobs.system.specification import desired_polynomial, over_common_data, read_gain, reject_both
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import factored_form, given
@@ -30,7 +30,7 @@ from symobs.tasks.design.compensator.compensator import observer_based, observer
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import design_of
-from symobs.tasks.result import Result, choose, method, page_of, poles_of, task
+from symobs.tasks.result import Result, choose, equality, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -114,17 +114,15 @@ class Margins(Result):
             if own is not None:
                 inner = e["A_c"].pencil
                 whole = whole @ inner.apply("det")
-            yield Claim(relation(e["chi_o"], whole), e, "P = det(s*I - A), times that of the compensator")
-            yield Claim(
-                relation(closed, _plain(self.design.fields[_LOOPS[self.design.task][0]])), e, "P + N of the design"
-            )
+            yield equality(e["chi_o"], whole, e, "P = det(s*I - A), times that of the compensator")
+            yield equality(closed, _plain(self.design.fields[_LOOPS[self.design.task][0]]), e, "P + N of the design")
         else:
             A, B, C, D, F = (e[name] for name in "ABCDF")
-            yield Claim(relation(e["chi_o"], whole @ e["q"]), e, "P = det(s*I - A) times that of F")
+            yield equality(e["chi_o"], whole @ e["q"], e, "P = det(s*I - A) times that of F")
             G = C @ A.pencil.inverse @ B + D
             one = identity(1, e)
             said = "P + N = P*(1 + F*G)"
-            yield Claim(relation(e["chi_cl"] @ one, e["chi_o"] @ (one + F @ G)), e, said)
+            yield equality(e["chi_cl"] @ one, e["chi_o"] @ (one + F @ G), e, said)
         if answer["slowest"] is not None:
             yield Statement("the slowest root", lambda: "exact" if self._slowest == answer["slowest"] else "")
         if answer["modulus"] is not None:

@@ -33,7 +33,6 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, Undecided
 from symobs.proof.certificate.claims import Claim, Statement
 from symobs.proof.certificate.pointwise import never_together_zero
-from symobs.proof.derivation.builder import relation
 from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import monic, on_boundary, stability
 from symobs.system.conditions import joined, nonzero, real_consequences, sign_of, vanishing_factors
@@ -41,7 +40,7 @@ from symobs.system.specification import over_common_data, read_symmetric
 from symobs.tasks.analysis.modes.modes import polynomial_of
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stable_factors, with_signs
-from symobs.tasks.result import Case, Result, choose
+from symobs.tasks.result import Case, Result, choose, equality
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -180,24 +179,24 @@ class OptimalGain(Result):
         def of(name: str) -> Term:
             return e[name]
 
-        yield Claim(relation(of("P"), of("P").T), e, "P = P.T")
+        yield equality(of("P"), of("P").T, e, "P = P.T")
         for equation, says in self.equations(of, discrete=plant.is_discrete):
             yield Claim(equation, e, says)
         pencil = e["s"] @ identity(plant.order, e) - self.loop(of)
-        yield Claim(relation(pencil.apply("det"), of("p")), e, "the polynomial is that of the loop")
+        yield equality(pencil.apply("det"), of("p"), e, "the polynomial is that of the loop")
         v, factors = plant.variable, self.answer["factors"]
         is_stable = stability(polynomial, v, signs, discrete=plant.is_discrete).verdict == "yes"
         yield Statement("the loop is asymptotically stable", lambda: _shown(is_stable))
         are_monic = all(factor.coefficients(v)[0].is_one for factor in factors)
         yield Statement("the factors are monic", lambda: _shown(are_monic))
         moved = [to_disc(factor, v) for factor in factors] if plant.is_discrete else factors
-        yield Claim(relation(of("p"), product_of(moved)), e, "the polynomial is the product of the factors")
+        yield equality(of("p"), product_of(moved), e, "the polynomial is the product of the factors")
         if not _is_numeric(self.regulator):
             even, s = self.even, Scalar.symbol(plant.variable)
             p = product_of(self.answer["factors"])
             whole = p * p.substitute({plant.variable: -s})
             e = Environment(variable=plant.variable, relations=identities([p, even])[1])
-            yield Claim(relation(whole, even * (-1) ** plant.order), e, "p(s)*p(-s) is the polynomial of H")
+            yield equality(whole, even * (-1) ** plant.order, e, "p(s)*p(-s) is the polynomial of H")
 
     def _about_obstacle(self, found: Obstacle) -> Iterator[Claim | Statement]:
         regulator, plant = self.regulator, self.plant
@@ -205,11 +204,11 @@ class OptimalGain(Result):
         row, of = (regulator.B.T, regulator.A.T) if found.kind == "uncontrollable" else (Q, A)
         e = Environment(variable=plant.variable, values={"row": row, "of": of, "N": found.N, "X": found.X})
         N, X = e["N"], e["X"]
-        yield Claim(relation(e["row"] @ N, Matrix.zeros(row.shape[0], found.N.shape[1])), e, "N is hidden")
-        yield Claim(relation(e["of"] @ N, N @ X), e, "N is invariant")
-        yield Claim(relation(N.apply("rank"), found.N.shape[1]), e, "N has full rank")
+        yield equality(e["row"] @ N, Matrix.zeros(row.shape[0], found.N.shape[1]), e, "N is hidden")
+        yield equality(e["of"] @ N, N @ X, e, "N is invariant")
+        yield equality(N.apply("rank"), found.N.shape[1], e, "N has full rank")
         pencil = X.pencil
-        yield Claim(relation(pencil.apply("det"), found.polynomial), e, "the polynomial of the hidden modes")
+        yield equality(pencil.apply("det"), found.polynomial, e, "the polynomial of the hidden modes")
         signs, variable, discrete = plant.symbols.signs, plant.variable, plant.is_discrete
         if found.kind == "uncontrollable":
             is_unstable = stability(found.polynomial, variable, signs, discrete=discrete).verdict == "no"

@@ -38,7 +38,7 @@ from symobs.tasks.analysis.rank.observability import Controllability, Observabil
 from symobs.tasks.analysis.strata.loci import loci
 from symobs.tasks.analysis.strata.strata import carried, equations_of_locus, region_of, strata
 from symobs.tasks.design.pole_placement.single_output import ObserverPair
-from symobs.tasks.result import Case, Result
+from symobs.tasks.result import Case, Result, equality
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -442,12 +442,12 @@ class AdvisedPoles(Result):
         e = Environment(variable=variable, values=values, signs=self.plant.symbols.signs)
         e = e.with_relations(identities([zeros, rest])[1])
         z, r, s = (e[name] for name in ("phi_z", "phi_r", "s"))
-        yield Claim(relation(numerator_term(e, self.plant), z @ Term(Literal(self.zeros.others), e)), e)
-        yield Claim(relation(e["phi_o"], z @ r), e)
+        yield equality(numerator_term(e, self.plant), z @ Term(Literal(self.zeros.others), e), e)
+        yield equality(e["phi_o"], z @ r, e)
         if not self.count:
-            yield Claim(relation(r, 1), e)
+            yield equality(r, 1, e)
         elif self.request.radius is not None:
-            yield Claim(relation(r @ (-s).apply("phi_r_at"), self.circle), e, "phi_r(s) phi_r(-s) is Butterworth's")
+            yield equality(r @ (-s).apply("phi_r_at"), self.circle, e, "phi_r(s) phi_r(-s) is Butterworth's")
         else:
             yield from self._claims_of_pair(e)
         yield from self._claims_of_fixed_modes()
@@ -480,14 +480,14 @@ class AdvisedPoles(Result):
         sigma, omega_d, request = self.answer["sigma"], self.answer["omega_d"], self.request
         assert request.settling_time is not None and request.overshoot is not None  # noqa: S101, PT018
         product = sigma * request.settling_time
-        yield Claim(relation(product, 4), e, "sigma*T = 4")
+        yield equality(product, 4, e, "sigma*T = 4")
         yield Claim(relation(function("exp", -product), "<=", Scalar.of(Fraction(1, 50))), e)
         if (omega_d is None) != (self.count < 2):
             raise CertificateRejected("two poles and more begin with a pair")
         if omega_d is not None:
             yield Claim(relation(overshoot_of(omega_d / sigma), "<=", request.overshoot), e)
         expected = product_of(dominated(self.count, sigma, omega_d, self.plant.variable))
-        yield Claim(relation(e["phi_r"], expected), e, "phi_r = (pair)(further left)")
+        yield equality(e["phi_r"], expected, e, "phi_r = (pair)(further left)")
 
     def _claims_of_fixed_modes(self) -> Iterator[Claim]:
         """Yield the claim that the modes missing among the poles are unobservable."""
@@ -498,11 +498,11 @@ class AdvisedPoles(Result):
         size = N.shape[1]
         e = Environment(variable=variable, values={"A": m.A, "C": m.C, "N": N, "X": X})
         A, C, N_, X_ = (e[name] for name in ("A", "C", "N", "X"))
-        yield Claim(relation(C @ N_, Matrix.zeros(1, size)), e, "C*N = 0")
-        yield Claim(relation(A @ N_, N_ @ X_), e)
-        yield Claim(relation(N_.apply("rank"), size), e)
+        yield equality(C @ N_, Matrix.zeros(1, size), e, "C*N = 0")
+        yield equality(A @ N_, N_ @ X_, e)
+        yield equality(N_.apply("rank"), size, e)
         pencil = X_.pencil
-        yield Claim(relation(pencil.apply("det"), pair.fixed_polynomial), e, "det(s*I - X) = fixed polynomial")
+        yield equality(pencil.apply("det"), pair.fixed_polynomial, e, "det(s*I - X) = fixed polynomial")
 
     # -- what follows ------------------------------------------------------------------------------------------------
 

@@ -33,7 +33,7 @@ from symobs.tasks.analysis.strata.strata import equations_of, places, solved
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import chosen, design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
-from symobs.tasks.result import Case, Result, choose, method, poles_of, task
+from symobs.tasks.result import Case, Result, choose, equality, method, poles_of, task
 from symobs.tasks.result.control_systems import Controller, observer_of
 
 if TYPE_CHECKING:
@@ -194,10 +194,10 @@ class ReducedOrderObserver(Result):
         values |= {"phi": self.desired.polynomial, "R": T.select(range(plant.outputs, plant.order), columns)}
         e = Environment(variable=plant.variable, values=values)
         parts, inner = partition(plant, T), self.inner
-        yield Claim(relation(T.select(rows, columns), e["C"]), e, "the upper rows of T are C")
-        yield Claim(relation(parts.A22, inner.plant.matrices.A), e, "the inner gain is one for A22")
-        yield Claim(relation(parts.A12, inner.plant.matrices.C), e, "the inner gain is one for A12")
-        yield Claim(relation(e["phi"], inner.answer["polynomial"]), e, "the inner gain is one for phi(s)")
+        yield equality(T.select(rows, columns), e["C"], e, "the upper rows of T are C")
+        yield equality(parts.A22, inner.plant.matrices.A, e, "the inner gain is one for A22")
+        yield equality(parts.A12, inner.plant.matrices.C, e, "the inner gain is one for A12")
+        yield equality(e["phi"], inner.answer["polynomial"], e, "the inner gain is one for phi(s)")
         if (answer["L"] is None) != (inner.answer["L"] is None):
             raise CertificateRejected("there is a reduced-order observer exactly where the pair (A12, A22) has a gain")
         if answer["L"] is None:
@@ -206,15 +206,15 @@ class ReducedOrderObserver(Result):
             raise CertificateRejected("G belongs to a plant with an input, and to no other")
         A, C, L, F, H, M, R = (e[name] for name in ("A", "C", "L", "F", "H", "M", "R"))
         P = R - L @ C
-        yield Claim(relation(P @ A - F @ P, H @ C), e, "P*A - F*P = H*C")
+        yield equality(P @ A - F @ P, H @ C, e, "P*A - F*P = H*C")
         if answer["G"] is not None:
             driven = P @ e["B"]
             if plant.matrices.has_feedthrough:
                 driven = driven - H @ e["D"]
-            yield Claim(relation(e["G"], driven), e, "G = P*B - H*D")
-        yield Claim(relation(M @ block([[C], [P]]), identity(plant.order, e)), e, "M*[C; P] = I")
+            yield equality(e["G"], driven, e, "G = P*B - H*D")
+        yield equality(M @ block([[C], [P]]), identity(plant.order, e), e, "M*[C; P] = I")
         pencil = F.pencil
-        yield Claim(relation(pencil.apply("det"), e["phi"]), e, "det(s*I - F) = phi(s)")
+        yield equality(pencil.apply("det"), e["phi"], e, "det(s*I - F) = phi(s)")
 
     @property
     def systems(self) -> Mapping[str, Realisation]:
@@ -314,7 +314,7 @@ class DependentOutputs(ReducedOrderObserver):
         """Yield w C = 0 and w ≠ 0."""
         e = Environment(values=letters_of(self.plant) | {"w": self.answer["w"]})
         w, m = e["w"], self.plant.matrices
-        yield Claim(relation(w @ e["C"], Matrix.zeros(1, m.C.shape[1])), e, "w*C = 0")
+        yield equality(w @ e["C"], Matrix.zeros(1, m.C.shape[1]), e, "w*C = 0")
         yield Claim(relation(w, "!==", Matrix.zeros(1, m.C.shape[0])), e, "w is not 0")
         if any(self.answer[name] is not None for name in "LTFGHM"):
             raise CertificateRejected("outputs that depend on each other leave no observer of order n - p")

@@ -30,7 +30,7 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
 )
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, letters_of
 from symobs.tasks.design.page_parts import draw_feedforward, draw_state_feedforward
-from symobs.tasks.result import Case, Result, choose, method, page_of, poles_of, task
+from symobs.tasks.result import Case, Result, choose, equality, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -139,18 +139,18 @@ class FeedforwardDesign(Result):
         if stuck is not None:
             still = A @ e["x_0"] - B @ K_ @ e["x_0"]
             there = e["x_0"] if self.plant.is_discrete else Matrix.zeros(order, 1)
-            yield Claim(relation(still, there), e, "a mode never comes to rest")
+            yield equality(still, there, e, "a mode never comes to rest")
             yield Claim(relation(e["x_0"], "!==", Matrix.zeros(order, 1)), e, "the mode is not 0")
             return
         rest = (one - A + B @ K_ if self.plant.is_discrete else B @ K_ - A).inverse
         at_rest = (C - D @ K_) @ rest @ B + D
         if w is not None:
-            yield Claim(relation(e["w"] @ at_rest, Matrix.zeros(1, self.plant.inputs)), e, "w*G = 0")
+            yield equality(e["w"] @ at_rest, Matrix.zeros(1, self.plant.inputs), e, "w*G = 0")
             yield Claim(relation(e["w"], "!==", Matrix.zeros(1, self.plant.outputs)), e, "w is not 0")
             return
         F_, T, s = e["F"], e["T_v"], e["s"]
-        yield Claim(relation(at_rest @ F_, identity(self.plant.outputs, e)), e, "G*F = I")
-        yield Claim(relation(T, (C - D @ K_) @ (s @ one - A + B @ K_).inverse @ B @ F_ + D @ F_), e)
+        yield equality(at_rest @ F_, identity(self.plant.outputs, e), e, "G*F = I")
+        yield equality(T, (C - D @ K_) @ (s @ one - A + B @ K_).inverse @ B @ F_ + D @ F_, e)
         if isinstance(self.loop, KnownState):
             return
         errors = self.loop.error_coordinates.shape[0] - order
@@ -159,7 +159,7 @@ class FeedforwardDesign(Result):
         seen = block([[C - D @ K_, D @ K_e]])
         driven = block([[B @ F_], [nothing]])
         whole = seen @ A_cl.pencil.inverse @ driven + D @ F_
-        yield Claim(relation(zero["T_v"], whole), zero, "the whole loop with its error responds alike")
+        yield equality(zero["T_v"], whole, zero, "the whole loop with its error responds alike")
 
     @property
     def systems(self) -> Mapping[str, Realisation]:

@@ -41,7 +41,7 @@ from symobs.tasks.design.page_parts import (
     gain_letters,
     say_unassignable,
 )
-from symobs.tasks.result import Case, Result, choose, method, page_of, poles_of, task
+from symobs.tasks.result import Case, Result, choose, equality, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -134,16 +134,16 @@ class IntegralAction(Result):
         whole, size = _system(e, plant), extended_order(plant)
         if w is None:
             beside = replace(e, relations=(*relations, *outside(self.distances)), signs=plant.symbols.signs)
-            yield Claim(relation(whole.apply("rank"), size), beside, "rank [A B; C D] = n + p")
+            yield equality(whole.apply("rank"), size, beside, "rank [A B; C D] = n + p")
         else:
-            yield Claim(relation(e["w"] @ whole, Matrix.zeros(1, plant.order + plant.inputs)), e, "w*[A B; C D] = 0")
+            yield equality(e["w"] @ whole, Matrix.zeros(1, plant.order + plant.inputs), e, "w*[A B; C D] = 0")
             yield Claim(relation(e["w"], "!==", Matrix.zeros(1, size)), e, "w is not 0")
         if K is not None:
             both = block([[e["K"], -e["k_I"]]])
-            yield Claim(relation(both, self.loop.answer["K"]), e, "[K, -k_I] is the feedback of plant and integrator")
+            yield equality(both, self.loop.answer["K"], e, "[K, -k_I] is the feedback of plant and integrator")
             closed = block(closed_loop(e, plant))
             pencil = closed.pencil
-            yield Claim(relation(pencil.apply("det"), self.answer["polynomial"]), e, "det(s*I - closed loop) = phi")
+            yield equality(pencil.apply("det"), self.answer["polynomial"], e, "det(s*I - closed loop) = phi")
 
     @cached_property
     def blocked(self) -> tuple[tuple[Scalar, ...], ...]:

@@ -48,7 +48,7 @@ from symobs.tasks.design.gain.gain_cases import places_beside
 from symobs.tasks.design.gain.gain_design import FEEDBACK, letters_of, page_style
 from symobs.tasks.design.gain.gain_page import write_gain
 from symobs.tasks.design.page_parts import caution_poles
-from symobs.tasks.result import Case, Result, choose, method, page_of, poles_of, task
+from symobs.tasks.result import Case, Result, choose, equality, method, page_of, poles_of, task
 from symobs.tasks.result.control_systems import Controller
 
 if TYPE_CHECKING:
@@ -176,18 +176,18 @@ class OutputRegulation(Result):
         e = _environment(plant, self.exogenous, answer)
         A, B, C, D, S, Q, E = (e[name] for name in ("A", "B", "C", "D", "S_w", "Q_r", "E_d"))
         if K is not self.loop.answer["K"]:
-            yield Claim(relation(K, self.loop.answer["K"]), e, "K is the certified gain")
+            yield equality(K, self.loop.answer["K"], e, "K is the certified gain")
         if U is not None:
             U_, V = e["U_r"], e["V_r"]
-            yield Claim(relation(U_ @ A + V @ C, S @ U_), e, "U*A + V*C = S*U")
-            yield Claim(relation(U_ @ B + V @ D, Matrix.zeros(self.exogenous.order, plant.inputs)), e, "U*B + V*D = 0")
+            yield equality(U_ @ A + V @ C, S @ U_, e, "U*A + V*C = S*U")
+            yield equality(U_ @ B + V @ D, Matrix.zeros(self.exogenous.order, plant.inputs), e, "U*B + V*D = 0")
             yield Claim(relation(self.obstacle, "!==", 0), e, "trace of U*E - V*Q is not 0")
         else:
             Pi_, Gamma = e["Pi_w"], e["Gamma_w"]
-            yield Claim(relation(A @ Pi_ + B @ Gamma + E, Pi_ @ S), e, "A*Pi + B*Gamma + E = Pi*S")
-            yield Claim(relation(C @ Pi_ + D @ Gamma, Q), e, "C*Pi + D*Gamma = Q")
+            yield equality(A @ Pi_ + B @ Gamma + E, Pi_ @ S, e, "A*Pi + B*Gamma + E = Pi*S")
+            yield equality(C @ Pi_ + D @ Gamma, Q, e, "C*Pi + D*Gamma = Q")
             if F is not None:
-                yield Claim(relation(e["F_w"], Gamma + e["K"] @ Pi_), e, "F = Gamma + K*Pi")
+                yield equality(e["F_w"], Gamma + e["K"] @ Pi_, e, "F = Gamma + K*Pi")
         yield from _blocking_claims(plant, self.exogenous.S, answer["blocked"])
 
     @property

@@ -29,7 +29,7 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.page_parts import draw_tracking
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
-from symobs.tasks.result import Case, Result, choose, method, page_of, poles_of, task
+from symobs.tasks.result import Case, Result, choose, equality, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -113,7 +113,7 @@ class TrackingDesign(Result):
         if w is not None:
             row = e["w"]
             left = row @ (A - A_ref) if everywhere else row @ (A - A_ref) @ V
-            yield Claim(relation(row @ B, Matrix.zeros(1, self.plant.inputs)), e, "w*B = 0")
+            yield equality(row @ B, Matrix.zeros(1, self.plant.inputs), e, "w*B = 0")
             zero = Matrix.zeros(1, self.passed.shape[1])
             yield Claim(
                 relation(left, "!==", zero), e, "w*(A - A_d) is not 0" if everywhere else "w*(A - A_d)*V is not 0"
@@ -122,12 +122,12 @@ class TrackingDesign(Result):
             left = A_ref - A + B @ e["K_d"]
             zero = Matrix.zeros(self.plant.order, self.passed.shape[1])
             said = "A_d - A + B*K_d = 0" if everywhere else "(A_d - A + B*K_d)*V = 0"
-            yield Claim(relation(left if everywhere else left @ V, zero), e, said)
+            yield equality(left if everywhere else left @ V, zero, e, said)
         if self.has_gains:
             values = {"A_e": self.matrix_of_errors, "phi": self.loop.loop_polynomial.value}
             own = Environment(variable=self.plant.variable, values=values)
             pencil = own["A_e"].pencil
-            yield Claim(relation(pencil.apply("det"), own["phi"]), own, "det(s*I - error matrix) = phi_c*phi_o")
+            yield equality(pencil.apply("det"), own["phi"], own, "det(s*I - error matrix) = phi_c*phi_o")
 
     def _passed_through(self, e: Environment) -> Iterator[Claim]:
         """Yield that V holds the start and is carried into itself by A_d: V Z = [x_d(0), A_d V]."""
@@ -137,11 +137,7 @@ class TrackingDesign(Result):
         target = Matrix.block([[self.start, self.reference @ V]])
         Z = V.select(rows, range(V.shape[1])).solve(target.select(rows, range(target.shape[1])))
         inside = e.extended_by(values={"Z": Z, "x_d0": target})
-        yield Claim(
-            relation(inside["V_d"] @ inside["Z"], inside["x_d0"]),
-            inside,
-            "V*Z = [x_d(0), A_d*V]",
-        )
+        yield equality(inside["V_d"] @ inside["Z"], inside["x_d0"], inside, "V*Z = [x_d(0), A_d*V]")
 
     @cached_property
     def passed(self) -> Matrix:
