@@ -27,7 +27,7 @@ from symobs.proof.derivation.steps import everything_in
 from symobs.proof.derivation.wording_check import obligations
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.gain.gain_design import GainDesign
-from tests.kit import SERVO
+from tests.kit import SERVO, tabled
 from tests.support.algebra import determinant, multiply, observability_rows, rank_of, transposed
 from tests.support.derivations import World, is_true, plus, still_true, times
 from tests.support.examples import EXAMPLES, results_of
@@ -161,7 +161,7 @@ def test_a_lie_that_survived_once_is_rejected(stem: str, key: str, where: str) -
             derivation.check()
 
 
-@pytest.mark.parametrize(("stem", "is_another"), [("fixed_modes_all_wanted", True), ("servo_observer", False)])
+@tabled
 def test_a_sign_before_a_gain_of_zero_may_be_any(stem: str, *, is_another: bool) -> None:
     """With L = 0 nothing of y − C x̂ reaches the integrator, nor of y + C x̂."""
     (path,) = (path for path in EXAMPLES if path.stem == stem)
@@ -343,7 +343,7 @@ def test_a_compensator_cannot_be_denied_nor_made_of_other_gains() -> None:
         replace(asked, answer=other.answer)
 
 
-@pytest.mark.parametrize(("observer", "poles"), [("full", [-5, -5, -6, -6]), ("minimal", [-5, -6])])
+@tabled
 def test_a_compensator_cannot_be_made_of_gains_for_another_plant(observer: str, poles: list[int]) -> None:
     """F may follow from the gains: the polynomial of the loop is false all the same."""
     rest = ("[0 0; 1 0; 0 0; 0 1]", "[1 0 0 0; 0 0 1 0]")

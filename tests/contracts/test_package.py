@@ -12,6 +12,7 @@ from zipfile import ZipFile
 
 import pytest
 
+from tests.kit import tabled
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
@@ -40,14 +41,7 @@ def files_below(folder: Path) -> set[Path]:
     }
 
 
-@pytest.mark.parametrize(
-    ("here", "there"),
-    [
-        ("symobs", "symobs"),
-        ("latex_templates", "symobs/latex_templates"),
-        ("worked_examples", "symobs/worked_examples"),
-    ],
-)
+@tabled
 def test_a_folder_reaches_the_wheel_whole(wheel: dict[str, bytes], here: str, there: str) -> None:
     files = files_below(ROOT / here)
     assert files, f"{here}/ is empty"

@@ -16,6 +16,7 @@ from symobs.formula.phrases import PHRASES, RESTS_ON, THEOREMS
 from symobs.formula.phrases.english import question_phrases
 from symobs.formula.phrases.literature import LITERATURE, bibliography, cited
 from symobs.tasks.result import Task, methods, tasks
+from tests.kit import tabled
 from tests.support.examples import document_of
 from tests.support.paths import ROOT
 
@@ -59,18 +60,7 @@ def test_a_module_of_phrases_contains_only_literal_tables(path: Path) -> None:
     assert faults(path.read_text("utf-8")) == []
 
 
-@pytest.mark.parametrize(
-    "source",
-    [
-        'PHRASES: dict[str, str] = {"a": "b"}',
-        '"""Words."""\nimport os',
-        '"""Words."""\nPHRASES: dict[str, str] = {"a": "b".upper()}',
-        '"""Words."""\nPHRASES: dict[str, str] = {**OTHERS}',
-        '"""Words."""\nDEMAND: dict[str, str] = {}',
-        '"""Words."""\nNAMING = tuple(PHRASES)',
-        '"""Words."""\ndef f() -> None: ...',
-    ],
-)
+@tabled
 def test_what_is_no_literal_table_is_seen(source: str) -> None:
     assert faults(source)
 

@@ -18,7 +18,7 @@ from symobs.pages.formats.json import result_object
 from symobs.problem import read
 from symobs.problem.expect import mismatches
 from symobs.proof.derivation.facts import PREDICATES, are_roots, polynomial_of
-from tests.kit import text_of
+from tests.kit import tabled, text_of
 from tests.support.algebra import evaluated as value
 
 
@@ -351,16 +351,7 @@ def test_a_plant_that_cannot_be_read_does_not_hide_what_is_missing() -> None:
     assert places == ["symbols.a", "symbols.a", "plant.B", "plant.C", "specification.observer_poles"]
 
 
-@pytest.mark.parametrize(
-    ("poles", "said"),
-    [
-        ("-1, -2, -5", "its fixed modes -1, -2 are among the desired poles"),
-        (
-            "-1, -3, -5",
-            "-1, -2 are unobservable, hence poles for every gain; not all of them are among the desired poles",
-        ),
-    ],
-)
+@tabled
 def test_several_fixed_modes_are_spoken_of_as_several(poles: str, said: str) -> None:
     problem = {
         "task": "observer",
@@ -378,20 +369,7 @@ CONTINUOUS = False
 HIDDEN = {"A": "[0 0; 0 1]", "B": "[1; 0]", "C": "[0 1]"}
 
 
-@pytest.mark.parametrize(
-    ("problem", "fields"),
-    [
-        (
-            {"task": "compensator", "specification": {"control_poles": "-3, -4", "observer_poles": "-3, -4"}},
-            "F F_stable closed_loop_polynomial closed_loop closed_loop_matrix closed_loop_matrix_estimate",
-        ),
-        (
-            {"task": "tracking", "specification": {"control_poles": "-3, -4", "observer_poles": "-3"}},
-            "error_matrix polynomial",
-        ),
-        ({"task": "feedforward", "specification": {"control_poles": "-3, -4", "observer_poles": "-3, -4"}}, "F"),
-    ],
-)
+@tabled
 def test_what_a_negative_answer_does_not_have_is_null(problem: dict[str, Any], fields: str) -> None:
     found = answered({**problem, "plant": HIDDEN})
     assert found["verdict"] == "no"
@@ -512,7 +490,7 @@ def test_what_is_a_polynomial_on_a_curve_has_its_stability() -> None:
     assert not PREDICATES["unstable"](fraction, environment, CONTINUOUS)
 
 
-@pytest.mark.parametrize("names", [("w",), ("v",), ("v", "w"), ()])
+@tabled
 def test_the_map_from_the_disc_takes_a_letter_that_is_free(names: tuple[str, ...]) -> None:
     # A symbol w of the user's own was taken for the variable of the mapped polynomial, and the page was refused.
     problem = {
@@ -525,15 +503,7 @@ def test_the_map_from_the_disc_takes_a_letter_that_is_free(names: tuple[str, ...
     assert result.to("latex")
 
 
-@pytest.mark.parametrize(
-    ("polynomial", "equation", "said"),
-    [
-        ("s^2 - 2", "a^2 - 2", True),
-        ("s^2 - 2", "", False),
-        ("s^2 - 3", "a^2 - 2", False),
-        ("s^2 + a s", "a^2 - 2", False),
-    ],
-)
+@tabled
 def test_roots_are_compared_where_the_relations_hold(polynomial: str, equation: str, said: bool) -> None:  # noqa: FBT001
     names = {"a": "real", "s": "real"}
     environment = Environment(variable="s", relations=(parse_scalar(equation, names),) if equation else ())

@@ -22,7 +22,7 @@ import symobs
 from symobs.exact import Matrix, Scalar
 from symobs.ground.errors import CertificateRejected, InexactInput
 from symobs.tasks.result import Result, methods, tasks
-from tests.kit import SERVO
+from tests.kit import SERVO, tabled
 from tests.support.algebra import assignable, random_fraction, seeded, value_at
 from tests.support.claims.asking import (
     DISTURBED,
@@ -434,7 +434,7 @@ def test_an_observer_is_the_transpose_of_state_feedback_of_the_dual_pair(sample:
     assert seen.fields["unobservable_modes"] == reached.fields["uncontrollable_modes"]
 
 
-@pytest.mark.parametrize(("task", "letter"), [("observer", "L"), ("state_feedback", "K")])
+@tabled
 @given(plants(("dense", "parametric"), largest=3))
 @settings(max_examples=8)
 def test_a_gain_handed_back_has_the_polynomial_that_was_asked_for(task: str, letter: str, sample: Sample) -> None:

@@ -12,6 +12,7 @@ import pytest
 import z3  # type: ignore[import-untyped, unused-ignore]
 
 import symobs
+from tests.kit import tabled
 from tests.programs.benchmarks import other_systems
 from tests.support.regions import qepcad, region_answers, region_checks
 from tests.support.regions.region_algebra import (
@@ -109,20 +110,7 @@ def test_z3_that_gives_up_leaves_it_to_qepcad(monkeypatch: pytest.MonkeyPatch) -
 # -- roots as variables -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("relation", "same"),
-    [
-        ("h1 < sqrt(h2)", "h2 >= 0 /\\ [h1 < 0 \\/ h1^2 < h2]"),
-        ("h1 > Abs(h2)", "h1 > h2 /\\ h1 > -h2"),
-        ("h1 > 1/h2", "[h2 > 0 /\\ h1 h2 > 1] \\/ [h2 < 0 /\\ h1 h2 < 1]"),
-        ("h1 >= CRootOf(x**2 - 2, 0)", "h1 >= 0 \\/ h1^2 <= 2"),
-        ("h1 < sqrt(1/h2)", "h2 > 0 /\\ [h1 < 0 \\/ h1^2 h2 < 1]"),
-        ("h1 == sqrt(-1 - h2**2)", "FALSE"),
-        ("h1 != sqrt(-1 - h2**2)", "FALSE"),
-        ("h1*sqrt(4) > 2", "h1 > 1"),
-        ("h1 > sqrt(2) + sqrt(3)", "h1 > 0 /\\ h1^4 - 10 h1^2 + 1 > 0 /\\ h1^2 > 5"),
-    ],
-)
+@tabled
 def test_roots_are_translated_exactly(relation: str, same: str) -> None:
     translation = Translation()
     unequal = difference(conjunction(translation, [relation]), formula(same))
@@ -171,25 +159,7 @@ def test_where_roots_lie_is_what_liénard_and_chipart_say(name: str) -> None:  #
 # -- right and wrong answers --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("name", "relations", "verdict"),
-    [
-        ("quartic_hyper", ["h2 > 0", "h1 > (h2**2 + 9)/(3*h2)"], "same"),
-        ("quartic_hyper", ["h2 > 0", "h1 >= (h2**2 + 9)/(3*h2)"], "different"),
-        ("quartic_hyper", ["h1 > (h2**2 + 9)/(3*h2)"], "different"),
-        ("ring_hole", ["h1**2 + h2**2 > 0"], "same"),
-        ("ring_hole", [], "different"),
-        ("disc", ["h1**2 + h2**2 < 3"], "same"),
-        ("disc", ["h1 > -sqrt(3 - h2**2)", "h1 < sqrt(3 - h2**2)"], "same"),
-        ("disc", ["h1 > -sqrt(3 - h2**2)", "h1 <= sqrt(3 - h2**2)"], "different"),
-        ("irrational_walls", ["h1 > -sqrt(2)", "h1 < sqrt(2)", "h2 > h1"], "same"),
-        ("irrational_walls", ["h1 > -sqrt(2)", "h1 < 141421356237/100000000000", "h2 > h1"], "different"),
-        ("empty_disc", ["False"], "same"),
-        ("everywhere", [], "same"),
-        ("pend_hang_symbols", ["h1 < 1", "h2 > -b"], "same"),
-        ("pend_hang_symbols", ["h1 < 1", "h2 > 0"], "different"),
-    ],
-)
+@tabled
 def test_relations_are_held_against_a_set(name: str, relations: list[str], verdict: str) -> None:
     problem = by_name(name)
     proof = same_relations(problem, relations, problem.stable())

@@ -12,6 +12,7 @@ import symobs
 from symobs.exact import Ideal, Scalar
 from symobs.problem import validate
 from symobs.problem.file_tables import parse
+from tests.kit import tabled
 from tests.programs.strata_oracle.__main__ import Found, drawn, examine
 from tests.programs.strata_oracle.answers import Branch, Contradiction, branches, hold, relations
 from tests.programs.strata_oracle.points import points_on
@@ -108,14 +109,7 @@ def test_a_given_gain_is_told_where_modes_are_fixed() -> None:
     assert [str(mode) for mode in case.result.fields["fixed_modes"]] == ["-1 + sqrt(2)*I", "-1 - sqrt(2)*I"]
 
 
-@pytest.mark.parametrize(
-    ("A", "signs", "point"),
-    [
-        ("[b+1 a^2-1; -1 a-1]", {"a": "nonnegative", "b": "real"}, (1, -1)),
-        ("[0 a^2-1; a-b b+1]", {"a": "negative", "b": "nonzero"}, (-1, -1)),
-        ("[-1 a+b; a*b c-b]", {"a": "negative", "b": "nonzero", "c": "nonzero"}, (-2, 4, 11)),
-    ],
-)
+@tabled
 def test_a_double_root_is_one_wherever_the_discriminant_vanishes(A: str, signs: Any, point: Any) -> None:
     # No sign of a discriminant that vanishes on the curve is left to be assumed there: the root is double, and exp(A t)
     # is exp(r t) (I + (A − r I) t).
@@ -207,14 +201,7 @@ def strata(answer: dict[str, Any]) -> Iterator[bool]:
         yield from strata(case)
 
 
-@pytest.mark.parametrize(
-    ("task", "plant", "least"),
-    [
-        ("compensator", ("[a-1 0 1; a-1 a-1 b+1; 0 0 b+1]", "[b 1; -1 0; b+1 0]", "[0 b a*b; a+b a+b a-1]"), 15),
-        ("reduced_order_observer", ("[-1 1 b+1; a+b a*b 0; 0 b+1 b+1]", "[0 0; 1 1; 1 a+b]", "[a*b b 1]"), 5),
-        ("compensator", ("[0 -1 b; -1 0 1; 0 1 0]", "[a+b 1; b+1 -1; a 0]", "[1 a*b b]"), 7),
-    ],
-)
+@tabled
 def test_plants_of_several_inputs_and_outputs_are_decided_on_all_strata_and_have_pages(
     task: str, plant: tuple[str, str, str], least: int
 ) -> None:

@@ -4,26 +4,13 @@ from __future__ import annotations
 
 import re
 
-import pytest
-
 import symobs
 from symobs.formula.phrases import PHRASES
 from symobs.problem import read
-from tests.kit import text_of
+from tests.kit import tabled, text_of
 
 
-@pytest.mark.parametrize(
-    ("A", "C", "poles", "sentence"),
-    [
-        (
-            "[-1 0; 0 -2]",
-            "[1 0]",
-            [-2, -3],
-            "No gain moves the unobservable mode -2, but it is among the desired poles",
-        ),
-        ("[-1 0 0; 0 -2 0; 0 0 -3]", "[1 0 0]", [-2, -3, -4], "the unobservable modes -2, -3, but they are among"),
-    ],
-)
+@tabled
 def test_hidden_modes_are_counted(A: str, C: str, poles: list[int], sentence: str) -> None:
     assert sentence in text_of(symobs.observer(symobs.StateSpace(A, C=C), poles=poles))
 

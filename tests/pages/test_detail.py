@@ -17,6 +17,7 @@ from symobs.pages.page.blocks import CaseBlock, Caution, Display, Paragraph, Ref
 from symobs.pages.page.detail_level import DETAILS, at_detail
 from symobs.pages.page.narrator import narrate
 from symobs.proof.derivation import CaseStep, Conclude, Define, Equal, Given, Note, Sentence
+from tests.kit import tabled
 from tests.support.examples import EXAMPLES, document_of
 from tests.support.sampling import every as some_of
 from tests.support.tools.command_line import SERVO, inside
@@ -171,17 +172,7 @@ def test_an_answer_stands_alone() -> None:
     assert answer == Define(way, None, answer=True)
 
 
-@pytest.mark.parametrize(
-    ("operators", "kept", "left"),
-    [
-        ("=", "AB", "="),
-        ("==", "AC", "="),
-        ("=<", "ABC", "=<"),
-        ("==<", "ACD", "=<"),
-        ("<=", "ABC", "<="),
-        ("==≈", "ACD", "=≈"),
-    ],
-)
+@tabled
 def test_only_equals_are_passed_over(operators: str, kept: str, left: str) -> None:
     names = "ABCD"[: len(operators) + 1]
     chain = Relation(tuple(map(Letter, names)), tuple(operators))

@@ -11,6 +11,7 @@ import pytest
 
 from symobs.formula.phrases import PHRASES
 from symobs.pages.page.sheet import Header, Sheet, SheetEntry
+from tests.kit import tabled
 from tests.pages.test_sheet import typeset
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import inside
@@ -94,15 +95,7 @@ def test_nothing_in_a_sheet_is_interpreted(name: str, folder: Path) -> None:
         assert not re.search(r"<script|(?<!\\)\[a\]|(?<!\\)`c", run.out)
 
 
-@pytest.mark.parametrize(
-    ("language", "due", "said"),
-    [
-        ("en", "2026-12-08", "Due: 8 December 2026"),
-        ("en", "2026-12-08T09:05:00", "Due: 8 December 2026, 09:05"),
-        ("de", "2026-03-01", "Abgabe: 1. März 2026"),
-        ("de", "2026-12-08T12:00:00", "Abgabe: 8. Dezember 2026, 12:00 Uhr"),
-    ],
-)
+@tabled
 def test_a_date_is_written_in_the_language_of_the_sheet(language: str, due: str, said: str, folder: Path) -> None:
     (folder / "sheet.toml").write_text(f'due = {due}\nlanguage = "{language}"\n{PROBLEMS}', "utf-8")
     assert f"{said}\n" in inside("sheet", "sheet.toml", "--questions", "--format", "text", folder=folder).out
@@ -310,7 +303,7 @@ def test_what_takes_a_child_too_long_keeps_its_question(folder: Path, monkeypatc
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("options", [("--questions",), (), ("--format", "beamer", "--questions")])
+@tabled
 def test_the_worked_sheet_is_typeset_without_a_fault(
     options: tuple[str, ...], tmp_path: Path, require_tool: RequireTool
 ) -> None:

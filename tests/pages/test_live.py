@@ -15,6 +15,7 @@ import pytest
 
 from symobs.applications.live import answer
 from symobs.applications.live.server import AnswerBudget, Children, Server
+from tests.kit import tabled
 from tests.support.live_link import problem_of
 from tests.support.tools.command_line import environment
 
@@ -774,7 +775,7 @@ def test_a_link_opens_the_same_and_back_undoes(opened: Callable[..., Opened]) ->
 
 
 @pytest.mark.parametrize("state", [f"{PAIR}&language=de", CASES, REGION], ids=["poles", "cases", "region"])
-@pytest.mark.parametrize(("width", "scheme"), [(320, "light"), (1180, "dark")])
+@tabled
 def test_nothing_overflows(opened: Callable[..., Opened], state: str, width: int, scheme: str) -> None:
     live = opened(state, color_scheme=scheme)
     live.page.set_viewport_size({"width": width, "height": 800})

@@ -40,7 +40,7 @@ from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.problem import validate
 from symobs.proof.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Section, Sentence
 from symobs.proof.derivation.decimals_check import check_decimals
-from tests.kit import text_of
+from tests.kit import tabled, text_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -113,7 +113,7 @@ def test_a_rounded_number_is_that_of_the_decimal_module_and_no_other(exact: Frac
         assert Fraction(text) == Fraction(there.divide(Decimal(exact.numerator), Decimal(exact.denominator)))
 
 
-@pytest.mark.parametrize("text", ["0.3333", "0.333333", "00.33333", "0.33333 ", "-0.33333", ".33333", "1/3", "0.33334"])
+@tabled
 def test_too_few_digits_too_many_and_other_texts_are_refused(text: str) -> None:
     assert not is_correctly_written(number("1/3"), text, 5)
 
@@ -134,9 +134,7 @@ def other_last_digits(text: str) -> Iterator[str]:
 # -- roots ---------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "coefficients", ["1 2.3 1.7 0.9", "1 0 -5 1", "1 0 0 1 1", "1 0 -2", "1 1.1 7.3", "9 -12 -11 -2", "1 4 5 2 0"]
-)
+@tabled
 def test_roots_in_decimals_are_those_of_another_program(coefficients: str) -> None:
     numbers = coefficients.split()
     text = " + ".join(f"({number}) s^{len(numbers) - place}" for place, number in enumerate(numbers, 1))

@@ -15,6 +15,7 @@ from symobs.cli.commands.sheet import _Progress
 from symobs.pages.formats.pdf import SLOWEST, TIME_LIMIT, Pdf
 from symobs.pages.page.sheet import WITHOUT_CONTENTS, Sheet, SheetEntry
 from symobs.tasks.result import formats
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import EXAMPLES, SERVO, fresh, inside
 
@@ -70,9 +71,7 @@ def test_a_problem_without_a_title_has_the_name_of_its_file(name: str, folder: P
     assert run.out.count("untitled") == 2
 
 
-@pytest.mark.parametrize(
-    ("flag", "has", "has_not"), [("--questions", "Task", "χ"), ("--solutions", "χ_A(s) =", "Task")]
-)
+@tabled
 def test_one_half_of_a_sheet(flag: str, has: str, has_not: str, folder: Path) -> None:
     run = inside("sheet", "good.toml", flag, "--format", "text", folder=folder)
     assert run.code == 0
@@ -81,7 +80,7 @@ def test_one_half_of_a_sheet(flag: str, has: str, has_not: str, folder: Path) ->
     assert "Given" in run.out  # solutions alone give the data too
 
 
-@pytest.mark.parametrize("options", [["--format", "text"], ["--format", "html", "--details"], ["--detail", "answer"]])
+@tabled
 def test_the_questions_of_an_exam_hold_neither_answers_nor_hints(options: list[str], tmp_path: Path) -> None:
     (tmp_path / "exam.toml").write_text(
         f'title = "Exam"\nstyle = "exam"\nfinal_answers = true\n[[problem]]\nfile = "{OBSERVER}"\nhint = "By heart."\n',
@@ -201,16 +200,7 @@ def test_one_that_fails_loses_no_other(folder: Path) -> None:
     assert bad.startswith("bad.toml: specification.poles: 1 pole given, 2 needed; give as many poles")
 
 
-@pytest.mark.parametrize(
-    ("names", "code"),
-    [
-        (["good", "met"], 0),
-        (["good", "no"], 4),
-        (["unmet", "good"], 4),
-        (["no", "bad"], 3),
-        (["bad", "unmet"], 3),
-    ],
-)
+@tabled
 def test_the_exit_code_is_the_worst(names: list[str], code: int, folder: Path) -> None:
     run = inside("sheet", *(f"{name}.toml" for name in names), "--format", "text", folder=folder)
     assert run.code == code
@@ -229,23 +219,7 @@ def test_a_bug_in_one_problem_loses_no_other(folder: Path, monkeypatch: pytest.M
     assert "Problem 2. Bad" in run.out
 
 
-@pytest.mark.parametrize(
-    ("arguments", "code", "said"),
-    [
-        ([], 2, "no problem file is named"),
-        (["good.toml", "--questions", "--solutions"], 2, "both --questions and --solutions"),
-        (["good.toml", "--format", "word"], 2, "'word' is not an output format"),
-        (["good.toml", "--format", "fragment"], 2, "fragment is for one problem; use one of"),
-        (["good.toml", "-o", "sheet.doc"], 2, 'the suffix ".doc" names no output format'),
-        (["good.toml", "-o", "nowhere/sheet.tex"], 3, "nowhere/sheet.tex: there is no folder "),
-        (["good.toml", "-o", "folder.tex"], 3, "folder.tex: this is a folder"),
-        (["good.toml", "missing.toml", "gone.toml"], 3, "gone.toml: No such file"),
-        (["good.toml", "--detail", "half"], 2, "not a level of detail"),
-        (["good.toml", "--templates", "nowhere"], 3, "nowhere: none of the templates"),
-        (["good.toml", "--templates", ".", "--format", "text"], 2, "the format text has no LaTeX template"),
-        (["-", "-"], 2, "standard input stands twice"),
-    ],
-)
+@tabled
 def test_what_can_be_said_before_work_starts_is(
     arguments: list[str], code: int, said: str, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -17,7 +17,7 @@ from symobs.pages.page.narrator import narrate
 from symobs.pages.printers.text_printer import text_width
 from symobs.proof.derivation import Equal, Section
 from symobs.tasks.result import render
-from tests.kit import SERVO
+from tests.kit import SERVO, tabled
 from tests.support.examples import document_of
 
 if TYPE_CHECKING:
@@ -67,16 +67,7 @@ def test_sources_are_numbered_as_they_are_read() -> None:
     assert firsts == sorted(firsts)
 
 
-@pytest.mark.parametrize(
-    ("name", "marks"),
-    [
-        ("text", (" │ State feedback",)),
-        ("latex", (r"\hfill\vrule\hfill", r"\textbf{State feedback}")),
-        ("beamer", (r"\hfill\vrule\hfill",)),
-        ("html", ('<table class="columns">', '<th scope="col">State feedback</th>')),
-        ("markdown", ("| Observer | State feedback |",)),
-    ],
-)
+@tabled
 def test_every_format_sets_them_side_by_side(name: str, marks: tuple[str, ...]) -> None:
     written = str(render(document(), name))
     assert all(mark in written for mark in marks)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import pytest
-
 from symobs import StateSpace, characteristic_polynomial, decomposition, detectability, gramian, observability
-from tests.kit import text_of
+from tests.kit import tabled, text_of
 
 
 def test_two_vectors_of_a_kernel_are_told_in_one_display() -> None:
@@ -15,35 +13,21 @@ def test_two_vectors_of_a_kernel_are_told_in_one_display() -> None:
     assert "The pair becomes observable if states 2 and 3 are also measured." in page
 
 
-@pytest.mark.parametrize(("A", "says"), [("[1/2 1; 0 1/3]", "exists, since"), ("[2 1; 0 1/3]", "does not exist")])
+@tabled
 def test_a_gramian_of_discrete_time_is_no_integral(A: str, says: str) -> None:
     page = text_of(gramian(StateSpace(A=A, C="[1 0]", dt=True), horizon="inf"))
     assert says in page
     assert "integral" not in page
 
 
-@pytest.mark.parametrize(
-    ("A", "conditions"),
-    [
-        ("[a 0 0; 0 -2 0; 0 0 -3]", "if and only if a < 0. The"),
-        ("[a 0 0; 0 -1 0; 0 0 b]", "if and only if a < 0."),
-    ],
-)
+@tabled
 def test_no_condition_beside_one_that_implies_it(A: str, conditions: str) -> None:
     plant = StateSpace(A=A, C="[0 0 1]", symbols={"a": "real", "b": "negative"})
     page = text_of(detectability(plant))
     assert conditions in page
 
 
-@pytest.mark.parametrize(
-    ("A", "roots"),
-    [
-        ("[0 w; -w 0]", "± w i."),
-        ("[0 1; -4*w^2 0]", "± 2w i."),
-        ("[0 1; -w 0]", "± √w i."),
-        ("[-1 w; -w -1]", "-1 ± w i."),
-    ],
-)
+@tabled
 def test_roots_on_a_vertical_line_are_written_with_i(A: str, roots: str) -> None:
     page = text_of(characteristic_polynomial(StateSpace(A=A, C="[1 0]", symbols={"w": "positive"})))
     assert f"roots are {roots}" in page

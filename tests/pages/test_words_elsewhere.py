@@ -8,20 +8,12 @@ import pytest
 
 import symobs
 from symobs.formula import phrases
-from tests.kit import text_of
+from tests.kit import tabled, text_of
 
 # -- stability regions ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("polynomial", "parameters"),
-    [
-        ("s^2 + 2 s + 1 + (h - 1)^2", ["h"]),
-        ("s^2 + 2 s + 1 + h^2", ["h"]),
-        ("s^2 + 2 s + 1 + h^2 + k^2", ["h", "k"]),
-        ("s^2 + 2 s + 1 + h^2 + (h - k)^2", ["h", "k"]),
-    ],
-)
+@tabled
 def test_a_polynomial_that_is_stable_whatever_the_values(polynomial: str, parameters: list[str]) -> None:
     text = text_of(symobs.stability_region(polynomial, parameters=parameters))
     assert f"Hence all roots are stable for all values of {' and '.join(parameters)}." in text
@@ -150,10 +142,7 @@ def test_a_loop_that_keeps_a_part_of_its_start_does_come_to_rest(poles: list[Any
 # -- compensators -----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("B", "C", "control", "observer"),
-    [("[0; 0]", "[1 1]", "-1, -2", "-4, -5"), ("[1; 1]", "[0 0]", "-3, -4", "-1, -2")],
-)
+@tabled
 def test_a_loop_without_response_has_no_poles(B: str, C: str, control: str, observer: str) -> None:
     design = symobs.compensator(symobs.StateSpace("[-1 0; 0 -2]", B, C), control_poles=control, observer_poles=observer)
     assert "It has no poles: all control and observer poles, -" in text_of(design)
@@ -253,7 +242,7 @@ def test_without_input_noise_there_is_one_part() -> None:
     assert "sum of two terms" in text_of(symobs.initial_state_covariance(plant, Q="q", R="r", horizon="T"))
 
 
-@pytest.mark.parametrize(("B", "Q"), [("[0]", "q"), ("[1]", "0")])
+@tabled
 def test_input_noise_that_does_not_arrive_spoils_no_estimate(B: str, Q: str) -> None:
     text = text_of(symobs.initial_state_covariance(symobs.StateSpace("[-1]", B, "[1]"), Q=Q, R="r", horizon="T"))
     assert "is not the minimum-variance estimate" not in text

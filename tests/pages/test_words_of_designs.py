@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import symobs
-from tests.kit import text_of
+from tests.kit import tabled, text_of
 
 
 def page(A: str, B: str, C: str, control: str, observer: str) -> str:
@@ -19,13 +19,7 @@ def test_one_chain_of_eigenvectors() -> None:
     assert "Since rank(A - B K + I) = 2, the repeated pole -1 gives transients with t exp(-t) beside exp(-t)." in text
 
 
-@pytest.mark.parametrize(
-    ("A", "B", "C", "control", "observer"),
-    [
-        ("[-2 0; 0 -2]", "[1; 0]", "[1 0]", "-2, -2", "-2, -2"),
-        ("[-2 0 0; 0 -2 0; 0 0 1]", "[1; 0; 1]", "[1 0 1]", "-2, -2, -3", "-2, -5, -6"),
-    ],
-)
+@tabled
 def test_a_mode_that_stays_may_have_an_eigenvector_of_its_own(
     A: str, B: str, C: str, control: str, observer: str
 ) -> None:

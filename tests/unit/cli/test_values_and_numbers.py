@@ -94,13 +94,7 @@ def test_refusals(folder: Path, arguments: list[str], code: int, message: str) -
 
 
 @pytest.mark.parametrize("kind", ["numpy", "csv"])
-@pytest.mark.parametrize(
-    ("task", "names"),
-    [
-        ('"response"\nspecification.input = "1"', "state, output contain t"),
-        ('"matrix_exponential"', "matrix contains t"),
-    ],
-)
+@tabled
 def test_a_table_of_numbers_that_would_be_empty_is_refused(folder: Path, kind: str, task: str, names: str) -> None:
     (folder / "step.toml").write_text(f'task = {task}\n[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n')
     run = inside("solve", "step.toml", "--format", kind, folder=folder)

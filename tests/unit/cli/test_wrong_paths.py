@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from tests.kit import tabled
 from tests.support.tools.command_line import SERVO, inside
 
 READING = [["solve"], ["audit"], ["sheet"], ["sheet", str(SERVO)]]
@@ -46,15 +47,7 @@ def refusal(*arguments: str) -> str:
 
 
 @pytest.mark.parametrize("command", READING, ids=" ".join)
-@pytest.mark.parametrize(
-    ("path", "said"),
-    [
-        ("missing.toml", "missing.toml: No such file or directory; "),
-        ("folder.toml", "folder.toml: Is a directory; "),
-        ("picture.toml", "picture.toml: byte 0 is not UTF-8; "),
-        ("", "an empty name: "),
-    ],
-)
+@tabled
 def test_what_cannot_be_read_is_named(command: list[str], path: str, said: str) -> None:
     assert refusal(*command, path).startswith(said)
 

@@ -278,14 +278,7 @@ def test_tasks_may_be_about_the_plant_that_another_one_finds() -> None:
     assert not validate(parse(SAMPLED, "file"), "observability").solve()[0].plant.is_discrete
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("observability", "no task here whose answer is a plant; write zero_order_hold"),
-        ("canonical_form", "no task here whose answer is a plant; write zero_order_hold"),
-        ("state_feedback", "no task here whose answer is a plant"),
-    ],
-)
+@tabled
 def test_the_plant_of_a_task_that_has_none_is_refused(name: str, words: str) -> None:
     (error,) = errors_of(lambda: read(SAMPLED.replace('plant_of = "zero_order_hold"', f'plant_of = "{name}"')))
     assert error.where == "plant_of"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 import symobs
+from tests.kit import tabled
 from tests.programs.benchmarks import __main__ as benchmarks
 from tests.programs.benchmarks import designs, measuring, models, other_systems, raw_flint, raw_numeric
 from tests.support.paths import ROOT
@@ -95,10 +96,7 @@ MODELS = {"generic_": lambda: models.generic(3), "cart_pole_": models.cart_pole,
 
 
 @needs_maxima
-@pytest.mark.parametrize(
-    ("stem", "formulation"),
-    [("generic_", "inverse"), ("cart_pole_", "bordered_minors"), ("two_masses_", "inverse")],
-)
+@tabled
 def test_maxima_agrees_and_a_difference_would_be_seen(stem: str, formulation: str, tmp_path: Path) -> None:
     model = MODELS[stem]()
     wanted = designs.differences_at_points(model, designs.solve(model))
@@ -108,15 +106,7 @@ def test_maxima_agrees_and_a_difference_would_be_seen(stem: str, formulation: st
 
 
 @needs_giac
-@pytest.mark.parametrize(
-    ("stem", "formulation"),
-    [
-        ("generic_", "cofactors"),
-        ("generic_", "inverse"),
-        ("cart_pole_", "bordered_minors"),
-        ("two_masses_", "bordered_minors"),
-    ],
-)
+@tabled
 def test_giac_agrees_and_a_difference_would_be_seen(stem: str, formulation: str, tmp_path: Path) -> None:
     model = MODELS[stem]()
     wanted = designs.differences(model, designs.solve(model))

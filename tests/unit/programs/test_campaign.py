@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from hypothesis import given, settings
 
+from tests.kit import tabled
 from tests.programs.campaign import __main__ as campaign
 from tests.programs.campaign.__main__ import ORACLES, examine, judged
 from tests.programs.campaign.points import Uncovered, answer_at, points_for
@@ -127,9 +128,7 @@ def test_a_wrong_answer_is_seen(task: str, field: str, said: str, require_tool: 
 
 
 @pytest.mark.parametrize("system", [GIAC, MAXIMA], ids=lambda system: system.NAME)
-@pytest.mark.parametrize(
-    ("task", "field"), [("observer", "L"), ("transfer_function", "transfer_function"), ("observability", "rank")]
-)
+@tabled
 def test_a_wrong_answer_is_seen_with_parameters(
     system: System, task: str, field: str, require_tool: Callable[[str], str]
 ) -> None:

@@ -197,13 +197,7 @@ def test_a_page_says_which_realisation_it_has_and_values_keep_it() -> None:
     assert "observable canonical form" in read_there.to("text")
 
 
-@pytest.mark.parametrize(
-    ("function", "kind", "words"),
-    [
-        ("1/s", "diagonal", "write one of controllable, observable, modal"),
-        ("[1/s, 1/s]", "modal", "minimal realisation"),
-    ],
-)
+@tabled
 def test_coordinates_that_there_are_not_are_refused(function: str, kind: str, words: str) -> None:
     with pytest.raises(InputError, match=words):
         StateSpace.from_transfer_function(function, realisation=kind)

@@ -148,7 +148,7 @@ def test_the_observable_form_in_any_layout_is_right_and_T_belongs_to_it(number: 
         }
 
 
-@pytest.mark.parametrize(("kind", "left_out"), [("controllable", 'C = "[1 0]"\n'), ("observable", 'B = "[1; 1]"\n')])
+@tabled
 def test_a_form_of_half_a_plant_and_without_T_is_judged_by_what_is_there(kind: str, left_out: str) -> None:
     problem = CANONICAL.format(kind).replace(left_out, "")
     # χ = s² − 5 s − 2 in the first row or column

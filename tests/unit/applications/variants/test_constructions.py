@@ -57,7 +57,7 @@ COUNTS = [pytest.param(15, id="few"), pytest.param(100, id="many", marks=pytest.
 
 
 @pytest.mark.parametrize("count", COUNTS)
-@pytest.mark.parametrize("shape", [{}, {"order": 4, "plant_poles": [-2, 3]}, {"pairs": 1, "steps": 4}])
+@tabled
 def test_all_gains_of_compensators_are_whole(shape: dict[str, Any], count: int) -> None:
     for plant, asked in made("compensator", count, **shape):
         A, B, C = (table(plant[name]) for name in "ABC")

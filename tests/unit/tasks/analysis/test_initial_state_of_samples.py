@@ -11,6 +11,7 @@ import sympy
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
+from tests.kit import tabled
 from tests.support.sampling import seeds
 
 #: All are drawn where there is time.
@@ -78,15 +79,7 @@ def test_pages_and_cases_of_samples() -> None:
     assert "so any multiple of it may be added" in hidden.to("text")
 
 
-@pytest.mark.parametrize(
-    ("asked", "words"),
-    [
-        ({}, "samples of the output are missing"),
-        ({"output": "1"}, "1 samples of the output, and 2 states"),
-        ({"output": "[1 2; 3 4]"}, "2 rows of samples"),
-        ({"output": "1, 2", "horizon": "3"}, "leave the horizon out"),
-    ],
-)
+@tabled
 def test_samples_that_cannot_be_read_are_refused(asked: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words):
         symobs.initial_state(StateSpace("[0 1; -1/2 1]", "[0; 1]", "[1 0]", dt=True), **asked)

@@ -11,6 +11,7 @@ from scipy.linalg import expm  # type: ignore[import-untyped]
 
 import symobs
 from symobs.ground.errors import InputError
+from tests.kit import tabled
 from tests.support.algebra import seeded
 from tests.support.sampling import seeds
 
@@ -84,7 +85,7 @@ def test_two_states_and_a_finite_horizon_are_needed() -> None:
         symobs.minimum_energy_input(plant, final="[1; 0]", horizon="inf")
 
 
-@pytest.mark.parametrize("rate", [(-735, 16), (-735, 2)])
+@tabled
 def test_exponentials_far_from_each_other_meet_at_the_end_of_the_horizon(rate: tuple[int, int]) -> None:
     """The exponents of e^{AT} e^{T} cancel those of e^{−A(T−t)} at t = T only in a base of both."""
     r, T = sympy.Rational(*rate), sympy.Symbol("T", positive=True)

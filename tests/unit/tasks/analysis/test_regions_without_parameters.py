@@ -11,12 +11,12 @@ import sympy
 import symobs
 from symobs.ground.errors import InputError, ProblemErrors
 from symobs.problem import read
-from tests.kit import text_of
+from tests.kit import tabled, text_of
 
 T, t = sympy.symbols("T t")
 
 
-@pytest.mark.parametrize("parameters", [[], "", "h", ["h", "k"]])
+@tabled
 @pytest.mark.parametrize(
     ("polynomial", "stable"), [("s^2 + s + 1", True), ("(s + 1)^3", True), ("s^2 - s + 1", False), ("s", False)]
 )

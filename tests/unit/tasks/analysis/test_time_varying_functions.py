@@ -11,6 +11,7 @@ import sympy
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError, Undecided
+from tests.kit import tabled
 from tests.support.algebra import seeded
 from tests.support.sampling import seeds
 
@@ -64,21 +65,7 @@ def test_ranks_are_those_of_the_stack(seed: int) -> None:
         assert all(abs(entry) < 1e-20 for entry in seen)
 
 
-@pytest.mark.parametrize(
-    ("A", "C", "exceptional", "ordinary"),
-    [
-        ("[0 0; 0 0]", "[exp(a*t) exp(b*t)]", [{"a": 1, "b": 1}, {"a": 0, "b": 0}], [{"a": 1, "b": 2}]),
-        ("[0 0; 0 0]", "[cos(a*t) sin(a*t)]", [{"a": 0}], [{"a": 3}]),
-        (
-            "[0 sin(a*t); 0 0]",
-            "[1 cos(b*t)]",
-            [{"a": 1, "b": 1}, {"a": 1, "b": -1}, {"a": 0, "b": 0}],
-            [{"a": 2, "b": 2}],
-        ),
-        ("[0 0 0; 0 0 0; 0 0 0]", "[1 cos(a*t) exp(b*t)]", [{"a": 0, "b": 1}, {"a": 1, "b": 0}], [{"a": 1, "b": 1}]),
-        ("[0 0; 0 0]", "[sin(t+a) cos(t)]", [{"a": "pi/2"}], [{"a": 0}]),
-    ],
-)
+@tabled
 def test_the_exceptional_parameters_are_all(
     A: str, C: str, exceptional: list[dict[str, Any]], ordinary: list[dict[str, Any]]
 ) -> None:

@@ -201,7 +201,7 @@ def test_a_decoupled_gain_that_lies_in_no_chart_is_written() -> None:
     assert "The inputs are decoupled, each driving a separate subsystem, by the gain" in words
 
 
-@pytest.mark.parametrize("arguments", [{}, {"zero": "(1, 1)"}, {"L": "[1 2; 3 4]"}])
+@tabled
 @pytest.mark.parametrize("member", ["nearest", "smallest"])
 def test_members_that_are_not_known_are_refused(member: str, arguments: dict[str, str]) -> None:
     asked = arguments if "L" in arguments else {"poles": [-1, -1, -1], **arguments}

@@ -26,6 +26,7 @@ from symobs.exact.floating.riccati_check import Regulator, excess, is_proved
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.formula.expression import parse_poles
 from symobs.ground.errors import CertificateRejected, InputError
+from tests.kit import tabled
 from tests.support.algebra import seeded
 from tests.support.paths import ROOT
 from tests.support.sampling import seeds
@@ -245,17 +246,7 @@ def test_lies_are_rejected() -> None:
         scalar.with_answer("digits", scalar.answer["digits"]._replace(centre=-scalar.answer["digits"].centre))
 
 
-@pytest.mark.parametrize(
-    ("weights", "match"),
-    [
-        ({"Q": "[1 0; 0 -1]", "R": "1"}, "Q is not positive semidefinite"),
-        ({"Q": "1", "R": "0"}, "R is not positive definite"),
-        ({"Q": "1", "R": "r"}, "R is not known to be positive definite: the sign of r"),
-        ({"Q": "1"}, "the weight R is missing"),
-        ({"Q": "[1 1; 0 1]", "R": "1"}, "Q is not symmetric"),
-        ({"Q": "1", "R": "1", "N": "[2; 0]"}, "not known to be positive semidefinite"),
-    ],
-)
+@tabled
 def test_wrong_weights_are_refused(weights: dict[str, str], match: str) -> None:
     with pytest.raises(InputError, match=match):
         symobs.lqr(symobs.StateSpace("[0 1; 0 0]", "[0; 1]"), **weights)
@@ -317,16 +308,7 @@ def test_a_condition_that_never_fails_is_not_told_and_sums_fail_together() -> No
     damped.to("text")
 
 
-@pytest.mark.parametrize(
-    ("A", "B", "Q", "R", "dt"),
-    [
-        ("[1 0; 0 -1]", "[1e-8; 1]", "1", "1", 0),
-        ("[1 1; 0 1]", "[0; 1e-9]", "1", "1", 0),
-        ("[0 1 0; 0 0 1; 0 0 0]", "[0; 0; 1]", "[1e-12 0 0; 0 0 0; 0 0 1]", "1", 0),
-        ("[1 1e-3; 0 1]", "[0; 1]", "[1e-10 0; 0 0]", "1", 1),
-        ("[0 1; -1 -1e-9]", "[0; 1]", "0", "1", 0),
-    ],
-)
+@tabled
 def test_plants_near_an_obstacle(A: str, B: str, Q: str, R: str, dt: int) -> None:
     result: Any = symobs.lqr(symobs.StateSpace(A, B, dt=dt), Q=Q, R=R)
     assert result.verdict == "yes"

@@ -38,16 +38,7 @@ TASKS: list[tuple[str, dict[str, Any]]] = [
 
 
 @pytest.mark.parametrize(("task", "further"), TASKS)
-@pytest.mark.parametrize(
-    ("control", "observer", "words"),
-    [
-        ("1, -2", "-3, -4", ["the closed loop is unstable"]),
-        ("i, -i", "-3, -4", ["does not converge to an equilibrium"]),
-        ("-1, -2", "0, -4", ["a component of the estimation error does not decay"]),
-        ("2, -2", "3, -4", ["the closed loop is unstable", "the estimation error grows"]),
-        ("-1, -2", "-3, -4", []),
-    ],
-)
+@tabled
 def test_every_task_with_both_gains(
     task: str, further: dict[str, Any], control: str, observer: str, words: list[str]
 ) -> None:
