@@ -8,6 +8,7 @@ import pickle
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from threading import Event
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,7 @@ from symobs.exact import Field, Matrix, Scalar
 from symobs.exact.core.generators import function
 from symobs.exact.core.ring import Precision
 from symobs.tasks.result import tasks
+from tests.kit import tables
 from tests.support.claims.asking import specification
 from tests.support.tools.another_process import Account, account_of, read_in_another_process
 
@@ -28,11 +30,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 #: Plants whose functions of time are exponentials, an oscillation with a root, and sums over roots of a cubic.
-PLANTS = {
-    "decaying": ([["0", "1"], ["-2", "-3"]], ["-1", "-5"]),
-    "turning": ([["0", "1"], ["-3", "-1"]], ["-1", "-5"]),
-    "of degree three": ([["0", "1", "0"], ["0", "0", "1"], ["-1", "-1", "-2"]], ["-1", "-5", "-6"]),
-}
+PLANTS = tables(Path(__file__))["plants"]
 IN_TIME = ("gramian", "initial_state", "matrix_exponential")
 NAMES = [(plant, task) for plant in PLANTS for task in (sorted(tasks()) if plant == "decaying" else IN_TIME)]
 

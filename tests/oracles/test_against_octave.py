@@ -7,6 +7,7 @@ output, or one input, the gain is unique and every number of it has to agree.
 from __future__ import annotations
 
 import random
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +15,7 @@ import pytest
 import sympy
 
 import symobs
+from tests.kit import tables
 from tests.support.tools import octave
 
 if TYPE_CHECKING:
@@ -24,21 +26,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 #: The plants of the sources, with poles for feedback and observer; the minimal order takes as many as it needs.
-PLANTS: dict[str, tuple[list[str], str, str]] = {
-    "servo": (["[0 1; 0 -1]", "[0; 1]", "[1 0]", "[0]"], "-2, -3", "-10, -11"),
-    "rate of the servo": (["[0 1; -4 -1]", "[0; 1]", "[0 1]", "[0]"], "-2, -3", "-10, -11"),
-    "feedthrough": (["[0 1; 0 -1]", "[0; 1]", "[1 0]", "[1/7]"], "-2, -3", "-10, -11"),
-    "third order": (
-        ["[-7 1 15; -2 0 5; -2 0 4]", "[65; -5; 30]", "[1 0 -2]", "[0]"],
-        "-1, -2, -3",
-        "-5, -6, -7",
-    ),
-    "cart": (
-        ["[0 0 0 1; 0 0 1 0; 0 10.78 0 0; 0 -0.98 0 0]", "[0; 0; -1; 1]", "[1 0 0 0]", "[0]"],
-        "-1, -2, -2+1i, -2-1i",
-        "-20+20i, -20-20i, -20, -21",
-    ),
-}
+PLANTS: dict[str, tuple[list[str], str, str]] = tables(Path(__file__))["plants"]
 
 _PLANT = "A = {A}; B = {B}; C = {C}; D = {D}; pc = [{control}]; po = [{observer}]; n = rows(A); p = rows(C);"
 

@@ -2,33 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import symobs
 from symobs.tasks.result import tasks
+from tests.kit import tables
 
 if TYPE_CHECKING:
     import random
 
 #: What entries are made of: numbers, decimals, parameters, functions of them, and roots.
-ENTRIES = {
-    "numbers": ["-3", "-2", "-1", "1", "2", "3"],
-    "decimals": ["1.2345", "-0.6789", "3.1416", "-2.7183", "0.0123"],
-    "parameters": ["1", "-1", "2", "a", "b", "-a", "a-b", "a*b", "1+a", "b^2"],
-    "functions": ["1", "-1", "exp(-a)", "cos(b)", "sin(b)", "a", "1-exp(b)", "-b"],
-    "roots": ["1", "-1", "sqrt(2)", "sqrt(3)-1", "a", "-2", "a-sqrt(2)"],
-}
+ENTRIES = tables(Path(__file__))["entries"]
 #: Those of which answers are long with three states.
 SHORT = [ENTRIES[kind] for kind in ("parameters", "functions", "roots")]
 #: f, its states, its inputs, and their values at rest.
-NONLINEAR: list[tuple[str, str, str, dict[str, Any]]] = [
-    ("[u - 0.5*sqrt(h)]", "h", "u", {"h": "4", "u": "1"}),
-    ("[v; -a*sin(x) - v + u]", "x, v", "u", {"x": "b", "v": 0, "u": "a*sin(b)"}),
-    ("[u - exp(-x)]", "x", "u", {"x": "a", "u": "exp(-a)"}),
-    ("[y; u - sinh(x)]", "x, y", "u", {"x": "a", "y": 0, "u": "sinh(a)"}),
-    ("[u - x*sqrt(1 + x^2)]", "x", "u", {"x": "a", "u": "a*sqrt(1+a^2)"}),
-    ("[u - exp(-1/x); x - y]", "x, y", "u", {"x": "a^2+1", "y": "a^2+1", "u": "exp(-1/(a^2+1))"}),
-]
+NONLINEAR: list[tuple[str, str, str, dict[str, Any]]] = tables(Path(__file__))["nonlinear"]
 
 
 def plant_of(chance: random.Random) -> symobs.StateSpace:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Factored, Matrix, Root, Scalar
@@ -33,6 +34,7 @@ from symobs.formula.tree import (
 from symobs.proof.derivation import Derivation, Section, Sentence
 from symobs.stability.criteria.routh_table import ORIGINS, RouthRow, RouthTable
 from symobs.stability.regions.region import RegionInequality
+from tests.kit import tables
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,51 +47,9 @@ if TYPE_CHECKING:
 NODES = (Letter, Literal, Identity, Sum, Negative, Product, Power, Transpose, Quotient, Apply, Block, Derivative)
 #: Up to this many terms every coefficient of a scalar is changed in turn, beyond it the first, middle and last.
 _MANY_TERMS = 8
-_OTHER_OPERATORS = {
-    "=": ("!=", "!=="),
-    "!=": ("=", ">"),
-    "!==": ("=",),
-    "~": ("=",),
-    "≈": ("=",),
-    "<": (">", "<="),
-    ">": ("<", ">="),
-    "<=": (">", "<"),
-    ">=": ("<", ">"),
-}
+_OTHER_OPERATORS = tables(Path(__file__))["other_operators"]
 #: Sentences that say the opposite, or of another thing, with the same slots.
-_OTHER_WORDS = [
-    ("stable_continuous", "unstable_continuous"),
-    ("stable_discrete", "unstable_discrete"),
-    ("compensator_stable", "compensator_unstable"),
-    ("case_survives_observer", "case_no_observer"),
-    ("case_survives_state_feedback", "case_no_state_feedback"),
-    ("routh_positive", "routh_negative"),
-    ("routh_criterion_positive", "routh_criterion_negative"),
-    ("connected_bounded", "connected_unbounded"),
-    ("box_bounded", "box_unbounded"),
-    ("full_rank_observability", "no_observability"),
-    ("full_rank_controllability", "no_controllability"),
-    ("yes_detectability", "no_detectability"),
-    ("yes_stabilizability", "no_stabilizability"),
-    ("zero_decides", "zeros_decide"),
-    ("cells_decide", "cells_decide_discrete"),
-    ("pbh_yes_observability", "pbh_no_observability"),
-    ("pbh_yes_controllability", "pbh_no_controllability"),
-    ("stack_yes", "stack_no"),
-    ("case_stack", "case_stack_yes"),
-    ("observability_matrix", "controllability_matrix"),
-    ("dual_positive", "dual_negative"),
-    ("control_poles", "observer_poles"),
-    ("control_polynomial", "observer_polynomial"),
-    ("semisimple", "grows"),
-    ("frozen_misled_no", "frozen_misled_yes"),
-    ("gramian_infinite_observability", "gramian_diverges_observability"),
-    ("initial_found", "initial_not_unique"),
-    ("disturbance_zeros_origin", "disturbance_blocked_origin"),
-    ("disturbance_fixed", "disturbance_impossible"),
-    ("uio_zeros_desired", "uio_impossible"),
-    ("uio_zeros_stable", "uio_zeros_unstable"),
-]
+_OTHER_WORDS = tables(Path(__file__))["other_words"]
 #: Sentences that say of a value only that nothing is decided where it vanishes.
 _UNDECIDED = {"undecided_case", "undecided_together", "undecided_many"}
 #: What else may be said to be counted.

@@ -6,13 +6,14 @@ import tomllib
 from collections import Counter
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import given, settings
 
-from tests.kit import tabled
+from tests.kit import tabled, tables
 from tests.programs.campaign import __main__ as campaign
 from tests.programs.campaign.__main__ import ORACLES, examine, judged
 from tests.programs.campaign.points import Uncovered, answer_at, points_for
@@ -54,32 +55,7 @@ def test_every_system_agrees_with_answers_to_random_problems(require_tool: Calla
 
 
 #: A field of an answer, how it is made wrong, and what PARI says of it.
-LIES = [
-    ("observability", "rank", "rank"),
-    ("controllability", "matrix", "matrix"),
-    ("detectability", "fixed_polynomial", "fixed polynomial"),
-    ("pbh", "polynomial", "characteristic polynomial"),
-    ("characteristic_polynomial", "polynomial", "polynomial"),
-    ("transfer_function", "transfer_function", "transfer function"),
-    ("canonical_form", "T", "A"),
-    ("dual", "A", "A"),
-    ("decomposition", "T", "A"),
-    ("state_feedback", "K", "closed-loop polynomial"),
-    ("observer", "L", "B_y"),
-    ("observer", "verdict", "verdict"),
-    ("reduced_order_observer", "H", "P A − F P = H C"),
-    ("compensator", "F", "F"),
-    ("compensator", "closed_loop_polynomial", "closed-loop polynomial"),
-    ("feedforward", "F", "transfer function"),
-    ("tracking", "K_d", "K_d"),
-    ("matrix_exponential", "matrix", "series"),
-    ("gramian", "matrix", "determinant"),
-    ("initial_state", "x0", "the outputs"),
-    ("initial_state_covariance", "output_part", "output part"),
-    ("time_varying_observability", "rank", "rank"),
-    ("pole_advice", "polynomial", "polynomial"),
-    ("stability_region", "stable_if", "inside"),
-]
+LIES = tables(Path(__file__))["lies"]
 #: The tasks of which Octave is told as well, by the same fields.
 IN_OCTAVE = {*TASKS} - {*OCTAVE.skipped, "pole_advice", "stability_region"}
 

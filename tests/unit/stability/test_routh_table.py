@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -26,7 +27,7 @@ from symobs.stability.criteria.routh_table import (
     routh_table,
     sign_changes,
 )
-from tests.kit import scalars, tabled
+from tests.kit import scalars, tabled, tables
 from tests.support.algebra import value_at
 from tests.support.problems.steps import checked, literal, refused, said
 from tests.support.second_reader import changes, expression, located, rows_of
@@ -41,13 +42,8 @@ h1, h2, h3, h4, b, omega, small = (Scalar.symbol(name) for name in ("h1", "h2", 
 CHI = Letter("chi")
 
 #: Where ε does not count right, found by search: standing in two places, or beside two roots on the imaginary axis.
-MISCOUNTED_TWICE = [[-1, 0, -1, 0, 0, 0, -1, 1, 2, 2, 1], [2, 0, 1, 0, 0, 0, -1, -1, -1, -1, -1]]
-MISCOUNTED = [
-    [-1, 0, 0, -1, 1, -1],
-    [3, -3, 0, 0, -1, 3, 2],
-    [-3, 0, -2, 3, -1, 1, -2, -2],
-    [1, -2, -1, 2, 1, 3, 3, -1],
-]
+MISCOUNTED_TWICE = tables(Path(__file__))["miscounted_twice"]
+MISCOUNTED = tables(Path(__file__))["miscounted"]
 
 
 def whole(numbers: Sequence[int | Fraction | Scalar]) -> list[Scalar]:

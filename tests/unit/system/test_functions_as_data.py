@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from random import Random
 from typing import Any
 
@@ -14,18 +15,10 @@ from symobs.ground.errors import InputError
 from symobs.problem import validate
 from symobs.problem.expect import mismatches
 from symobs.problem.file_tables import parse
-from tests.kit import tabled
+from tests.kit import tabled, tables
 
 SIGNS = {"theta": "real", "k": "positive", "T": "positive"}
-PLANTS = {
-    "tilted sensor": ("[0 1; -k 0]", "[-sin(theta); cos(theta)]", "[cos(theta) sin(theta)]"),
-    "pendulum": ("[0 1; -k*cos(theta) -1]", "[0; cos(2*theta)]", "[1 0]"),
-    "sampled": ("[1 1-exp(-T); 0 exp(-T)]", "[T-1+exp(-T); 1-exp(-T)]", "[1 0]"),
-    "slower": ("[1 1-exp(-2*T); 0 exp(-T)]", "[0; 1]", "[1 exp(-T)]"),
-    "roots": ("[0 1; -k sqrt(2)]", "[0; 2^(1/3)]", "[1 5^(2/5)]"),
-    "numbers": ("[0 pi; -1 exp(1)]", "[0; 1]", "[1 sin(1)]"),
-    "hyperbolic": ("[0 1; cosh(k) sinh(k)]", "[0; 1]", "[cosh(k) 1]"),
-}
+PLANTS = tables(Path(__file__))["plants"]
 
 
 def plant(name: str) -> symobs.StateSpace:

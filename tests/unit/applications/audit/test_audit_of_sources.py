@@ -24,17 +24,7 @@ PRINTED = [path for path in EXAMPLES if "[[printed]]" in path.read_text("utf-8")
 # Erratum → (right equations, one word of the reason for each).  An empty equation: nothing of these sizes is right.
 MATHEMATICAL = tables(Path(__file__))["mathematical"]
 # Slips of notation and caveats that show as a wrong equation too.
-OTHERS = {
-    "E1.3": [("x_hat' = A x_hat + B u - M (y - C x_hat)", "x is printed for x_hat")],
-    "E1.7": [("T A T^-1 = [0 0; 1 0]", "2x4"), ("T^-1 B = [1; 0]", "1x2")],
-    "E1.8": [("k_1 = -3", "k_1 is -3, not 0"), ("B_1 = 0", "B_1 is 0, not 3")],
-    "E1.11": [("M = [-3; -2]", "the left side is 2x1, the right side is 1x2")],
-    "E1.15": [("u = K x_hat", "C is printed for K")],
-    "E1.18": [("[x'; x_bar'] = [A+B*K -B*K; 0 A+M*C] [x; x_bar]", "x_hat is printed for x_bar")],
-    "E2.7": [("K = [K_1 K_2]", "[K_1; K_2] is printed for [K_1 K_2]")],
-    "E3.1": [("[1 -1 1] Psi^-1 = [431 -105 208]", "too few")],
-    "E4.5": [("det(s I - A + H C) = s^2 + s (b + h2) + omega^2 (h1 - 1)", "lam is printed for s")],
-}
+OTHERS = tables(Path(__file__))["others"]
 EXPECTED = MATHEMATICAL | OTHERS
 
 

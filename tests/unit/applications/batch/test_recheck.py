@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -11,7 +12,7 @@ import pytest
 from symobs.applications.batch.jobs import solve_job
 from symobs.applications.batch.recheck import CLAIMS, Beyond, fault, value
 from symobs.applications.batch.solving import given_for, problem_of, run
-from tests.kit import tabled
+from tests.kit import tabled, tables
 from tests.support.tools.command_line import EXAMPLES
 
 QUICK = [path for path in EXAMPLES if path.stem != "cart_pole"]
@@ -54,16 +55,7 @@ def test_the_worked_examples_hold_and_changed_ones_do_not() -> None:
 
 
 #: Fields every digit of which matters.
-_CHECKED = {
-    "state_feedback": ("K", "polynomial"),
-    "observer": ("L", "polynomial", "A"),
-    "compensator": ("K", "L", "F"),
-    "observability": ("matrix",),
-    "controllability": ("matrix",),
-    "characteristic_polynomial": ("polynomial",),
-    "transfer_function": ("transfer_function",),
-    "canonical_form": ("T", "A", "B", "C"),
-}
+_CHECKED = tables(Path(__file__))["checked"]
 
 
 @pytest.mark.parametrize(

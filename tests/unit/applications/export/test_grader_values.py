@@ -5,41 +5,17 @@ from __future__ import annotations
 import random
 import re
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 import sympy as sp
 
 from symobs.applications.export.grader.values import ONE, UnreadableError, number, poly, read
-from tests.kit import tabled
+from tests.kit import tabled, tables
 
 S = sp.Symbol("s")
 
-TEXTS = {
-    "-2^2": "-4",
-    "--2": "2",
-    "+-3": "-3",
-    "2^-1": "1/2",
-    "2**3": "8",
-    "2^3^2": "512",
-    "(1 + 2)(3)": "9",
-    "2(3)": "6",
-    "6/2*3": "9",
-    "6/(2*3)": "1",
-    "1.5e1": "15",
-    ".5": "1/2",
-    "2.": "2",
-    "1e-2": "1/100",
-    "\N{MINUS SIGN}3": "-3",
-    "3 - -2": "5",
-    "2\N{NO-BREAK SPACE}+\N{EN DASH}1": "1",
-    "\N{NON-BREAKING HYPHEN}3\N{ZERO WIDTH SPACE};": "-3",
-    "0^0": "1",
-    "1-2-3": "-4",
-    "8/2/2": "2",
-    "2^0": "1",
-    "-3^2*2": "-18",
-    "2*-3": "-6",
-}
+TEXTS = tables(Path(__file__))["texts"]
 
 
 @pytest.mark.parametrize("text", TEXTS)

@@ -7,7 +7,8 @@ import subprocess
 import sys
 import tomllib
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 from urllib.parse import parse_qsl
 
 import mpmath
@@ -23,13 +24,10 @@ from symobs.applications.live.request import SHORT, parsed
 from symobs.pages.formats.json import result_object
 from symobs.problem import validate
 from symobs.tasks.result import result_type, tasks
-from tests.kit import tabled
+from tests.kit import tabled, tables
 from tests.support.live_link import problem_of
 from tests.support.sampling import every
 from tests.support.tools.command_line import EXAMPLES, SAFETY, environment
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SERVO: dict[str, Any] = {
     "task": "compensator",
@@ -354,13 +352,7 @@ print(*sys.modules, sep="\\n")
 
 
 #: Beside the plant of an empty page: of two inputs and outputs, of letters, without input or output, in discrete time.
-_PLANTS: list[dict[str, Any]] = [
-    {"plant": {"A": "[0 1 0; 0 0 1; -6 -11 -6]", "B": "[0 0; 1 0; 0 1]", "C": "[1 0 0; 0 1 0]"}},
-    {"plant": {"A": "[0 1; -omega^2 0]", "C": "[1 0]"}, "symbols": {"omega": "positive"}},
-    {"plant": {"A": "[0 1; -2 -2]"}},
-    {"plant": {"A": "[1 0; 0 -1]", "B": "[0; 1]", "C": "[0 1]"}},
-    {"plant": {"A": "[1 1; 0 1/2]", "B": "[0; 1]", "C": "[1 0]", "dt": "1"}},
-]
+_PLANTS: list[dict[str, Any]] = tables(Path(__file__))["plants"]
 _SHOWN = {"task": "observer", "specification": {"poles": "-4, -4"}}
 
 

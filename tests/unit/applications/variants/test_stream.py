@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+from pathlib import Path
 
 import pytest
 
 from symobs.applications.variants.drawing import Draw, Draws
 from symobs.applications.variants.parameters import Parameter, read_parameter
+from tests.kit import tables
 
 SEEDS = (0, 7, 2**63 - 1)
 
@@ -33,25 +35,9 @@ def test_a_choice_without_replacement_is_that_of_fisher_and_yates_from_the_top()
         assert Draw(3, candidate, "p").some_of(range(9), 4) == left[5:]
 
 
-KINDS = {
-    "integers": {"integers": [-5, 5], "except": [0]},
-    "set": {"set": ["1/2", 1, "2"]},
-    "range": {"range": "1/2:1/3:4"},
-    "poles": {"poles": 3, "from": [-6, -1], "distinct": True},
-    "pairs": {"poles": 4, "from": [-4, 4], "complex": True},
-    "matrix": {"matrix": [2, 3], "integers": [-3, 3], "zeros": 3},
-    "unimodular": {"unimodular": 3, "steps": 2},
-}
+KINDS = tables(Path(__file__))["kinds"]
 #: SHA-256 of 200 draws of each kind for each of the seeds: a difference means that variants of old seeds are lost.
-FROZEN = {
-    "integers": "156c80ac37d99a16",
-    "set": "a5e5d5051f9c5b16",
-    "range": "c58b4816935f30d8",
-    "poles": "8de044cf7ca477d5",
-    "pairs": "db62f01e76e03997",
-    "matrix": "394b4480f0918169",
-    "unimodular": "7353335844555184",
-}
+FROZEN = tables(Path(__file__))["frozen"]
 
 
 def drawn(kind: str) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -35,33 +36,17 @@ from symobs.problem import parse, read, validate
 from symobs.problem.expect import mismatches
 from symobs.proof.derivation import translated
 from symobs.tasks.result import Document, render
-from tests.kit import tabled
+from tests.kit import tabled, tables
 from tests.support.sampling import every
 from tests.support.tools.command_line import EXAMPLES, inside
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from symobs.problem import Problem
 
 #: The table that opens the catalogue: the law, the observer matrix, the pair (a dash there: as in the standard).
-TABLE = {
-    "standard": ("u = -K x_hat", "A - L C", "(C, A)"),
-    "S0": ("u = -K x_hat", "A - L C", "(C, A)"),
-    "S1": ("u = K x_hat", "A + M C", "{A, C}"),
-    "S2": ("u = -K x_hat", "A - L C", "(A, C)"),
-    "S3": ("u = -K x_hat", "A - L C", "(A, C)"),
-    "S4": ("u = K x_hat", "A - H C", "[A, C]"),
-}
+TABLE = tables(Path(__file__))["table"]
 #: The gains of the double integrator with poles −1 ± i and −1, −2: S1 prints M = [−3; −2] and u = Kx with K = [−2 −2].
-GAINS = {
-    "standard": {"K": "[2 2]", "L": "[3; 2]"},
-    "S0": {"K": "[2 2]", "L": "[3; 2]"},
-    "S1": {"K": "[-2 -2]", "M": "[-3; -2]"},
-    "S2": {"K": "[2 2]", "L": "[3; 2]"},
-    "S3": {"K": "[2 2]", "L": "[3; 2]"},
-    "S4": {"K": "[-2 -2]", "H": "[3; 2]"},
-}
+GAINS = tables(Path(__file__))["gains"]
 PLANT = """
 [plant]
 A = "[0 1; 0 0]"
@@ -103,35 +88,7 @@ def test_one_problem_in_all_conventions(name: str) -> None:
         assert [line.split(":")[0] for line in unmet(spoiled)] == [f"expect.{letter}"]
 
 
-LINES = {
-    "standard": [
-        "u = -K x̂",
-        "A - L C",
-        "(C, A) is observable",
-        "u = -K x + K e",
-        "dx̂/dt = A x̂ + B u + L(y - C x̂)",
-    ],
-    "S0": ["r_o(s) = (s + 1)(s + 2)", "(C, A) is observable"],
-    "S1": [
-        "u = K x̂",
-        "A + M C",
-        "{A, C} is observable",
-        "dx̂/dt = A x̂ + B u - M(y - C x̂)",
-        "u = K x - K x̄",
-        "dx̂/dt = A_c x̂ - M y",
-        "det(sI - A_cl) = det(sI - A - B K)det(sI - A - M C)",
-        "⎡A + B K     -B K⎤",
-        "u = [-2 -2] x̂",
-    ],
-    "S2": [
-        "(A, C) is observable",
-        "u = -K x₀",
-        "e₀ = x - x₀",
-        "dx₀/dt = A x₀ + B u + L(y - C x₀)",
-    ],
-    "S3": ["(A, C) is observable", "u = -K x̂"],
-    "S4": ["u = K x̂", "A - H C", "[A, C] is observable", "u = K x - K e", "H(y - C x̂)", "u = [-2 -2] x̂"],
-}
+LINES = tables(Path(__file__))["lines"]
 
 
 @pytest.mark.parametrize("name", TABLE)

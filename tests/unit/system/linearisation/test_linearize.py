@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from pathlib import Path
 from random import Random
 from typing import Any
 
@@ -13,7 +14,7 @@ import symobs
 from symobs.ground.errors import InputError
 from symobs.problem import validate
 from symobs.problem.file_tables import parse
-from tests.kit import tabled
+from tests.kit import tabled, tables
 
 PENDULUM = """
 task = "observer"
@@ -96,25 +97,7 @@ def test_what_is_no_equilibrium_is_refused_with_the_reason(changes: dict[str, An
 
 
 #: f, the state's name, its equilibrium, the input there: roots, powers and functions of a state, by hand at rest.
-SCALAR = [
-    ("u - 0.5*sqrt(x)", "4", "1"),
-    ("u - k*sqrt(x)", "c", "k*sqrt(c)"),
-    ("u/m - k/m*sqrt(2*g*x)", "c", "k*sqrt(2*g*c)"),
-    ("u - k*x^0.5", "c", "k*c^(1/2)"),
-    ("u - x^1.5", "c", "c^1.5"),
-    ("u - x^(-1/2)", "c", "1/sqrt(c)"),
-    ("u - 2*sqrt(x + 1)", "3", "4"),
-    ("u - sqrt(x)", "2", "sqrt(2)"),
-    ("u - sqrt(sin(x))", "pi/6", "1/sqrt(2)"),
-    ("u - sqrt(1 + x^2)", "c", "sqrt(1 + c^2)"),
-    ("u - x/sqrt(1 + x^2)", "c", "c/sqrt(1 + c^2)"),
-    ("u*sqrt(k/m) - g*x^2", "sqrt(m*g/k)", "m*g^2/k*sqrt(m/k)"),
-    ("u - exp(-x)", "c", "exp(-c)"),
-    ("u - exp(-1/x)", "c", "exp(-1/c)"),
-    ("u - x*exp(-x)", "1", "exp(-1)"),
-    ("u - sinh(x)", "c", "sinh(c)"),
-    ("u - tanh(x)", "c", "tanh(c)"),
-]
+SCALAR = tables(Path(__file__))["scalar"]
 
 
 @pytest.mark.parametrize(("f", "at", "there"), SCALAR)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,6 +15,7 @@ import sympy
 
 import symobs
 from symobs.exact import Scalar
+from tests.kit import tables
 from tests.support.claims.claims import applicable
 
 pytestmark = pytest.mark.slow
@@ -21,14 +23,7 @@ pytestmark = pytest.mark.slow
 s = sympy.Symbol("s")
 VALUES = tuple(map(Fraction, (-2, -1, 0, 1, 3)))
 
-PLANTS: dict[str, tuple[str, str, str, str]] = {
-    "zero at infinity": ("[0 1; -2 -3]", "[0; 1]", "[1 c]", "0"),
-    "two modes": ("[-a 0; 0 -b]", "[1; 1]", "[c d]", "0"),
-    "through D": ("-a", "k", "1", "d"),
-    "hidden mode": ("[-1 1 0; 0 -2 0; 0 0 a]", "[0; 1; b]", "[1 0 c]", "0"),
-    "companion": ("[0 1 0; 0 0 1; -6 -11 -6]", "[0; 0; 1]", "[a b 1]", "0"),
-    "pole at zero": ("[0 1; 0 -a]", "[0; 1]", "[1 b]", "c"),
-}
+PLANTS: dict[str, tuple[str, str, str, str]] = tables(Path(__file__))["plants"]
 
 
 def at(entry: Any, point: dict[str, Fraction]) -> Any:

@@ -7,6 +7,7 @@ task says of the whole curve must be that.
 from __future__ import annotations
 
 from fractions import Fraction
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
@@ -16,7 +17,7 @@ import symobs
 from symobs.exact import Scalar
 from symobs.exact import ideals as ideal
 from symobs.pages.formats.json import result_object
-from tests.kit import tabled, text_of
+from tests.kit import tabled, tables, text_of
 
 pytestmark = pytest.mark.slow
 
@@ -139,18 +140,7 @@ def test_the_decomposition_on_a_curve(name: str) -> None:
         assert order == degree
 
 
-TASKS: dict[str, dict[str, Any]] = {
-    "observability": {},
-    "controllability": {},
-    "detectability": {},
-    "stabilizability": {},
-    "pbh": {},
-    "dual": {},
-    "decomposition": {},
-    "canonical_form": {"kind": "observable"},
-    "observer": {"roots": "observer"},
-    "compensator": {"roots": "both"},
-}
+TASKS: dict[str, dict[str, Any]] = tables(Path(__file__))["tasks"]
 
 
 def verdicts(told: dict[str, Any]) -> list[str]:

@@ -6,6 +6,7 @@ import itertools
 from dataclasses import replace
 from fractions import Fraction
 from math import inf as oo
+from pathlib import Path
 from typing import Any
 
 import mpmath
@@ -18,7 +19,7 @@ from hypothesis import strategies as st
 import symobs
 from symobs.exact import Factored, Scalar
 from symobs.ground.errors import CertificateRejected, InputError
-from tests.kit import tabled, text_of
+from tests.kit import tabled, tables, text_of
 from tests.support.algebra import has_sign
 from tests.support.claims.claims import Setting, applicable
 from tests.support.claims.claims_of_advice import advice_holds, numerator
@@ -120,15 +121,7 @@ def test_modes_that_no_gain_moves_are_a_no_with_their_subspace() -> None:
 
 # -- special parameters ------------------------------------------------------------------------------------------------
 
-SPECIAL = {
-    "zero at infinity": ("[0 1; -2 -3]", "[0; 1]", "[1 c]", {}),
-    "zero that crosses": ("[0 1; -2 -3]", "[0; 1]", "[c 1]", {}),
-    "pair that crosses": ("[0 1 0; 0 0 1; -1 -3 -3]", "[0; 0; 1]", "[b a 1]", {}),
-    "pair on the axis or not": ("[0 1 0; 0 0 1; -1 -3 -3]", "[0; 0; 1]", "[a 0 1]", {}),
-    "hidden mode": ("[a 0; 0 -2]", "[1; 1]", "[b 1]", {}),
-    "declared": ("[0 1; 0 -a]", "[0; 1]", "[c 1]", {"a": "positive", "c": "nonnegative"}),
-    "two zeros": ("[0 1 0; 0 0 1; -1 -3 -3]", "[0; 0; 1]", "[a*b a+b 1]", {}),
-}
+SPECIAL = tables(Path(__file__))["special"]
 ASKED: tuple[dict[str, Any], ...] = ({"radius": 3}, {"settling_time": 2, "overshoot": "1/10"})
 
 
