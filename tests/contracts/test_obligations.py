@@ -1,7 +1,7 @@
 """What sentences owe is declared beside their words: nothing declared may be lost, and nothing unknown be declared.
 
-The tables in the file beside it hold what was declared when each sentence was written.  They may grow; a sentence leaves them only with
-its words, or where its words no longer say so.
+The tables beside it hold what was declared when each sentence was written.  They may grow; a sentence leaves them only
+with its words, or where its words no longer say so.
 """
 
 from __future__ import annotations

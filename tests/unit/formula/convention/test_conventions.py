@@ -73,7 +73,7 @@ def unmet(found: Problem) -> list[str]:
 
 def test_the_profiles_are_those_of_the_table() -> None:
     written = {name: (found.law, found.observer_matrix, found.pair) for name, found in conventions().items()}
-    assert written == {ALIASES.get(name, name): laws for name, laws in TABLE.items()}
+    assert written == {ALIASES.get(name, name): tuple(laws) for name, laws in TABLE.items()}
     assert {name: convention_named(name).name for name in ALIASES} == ALIASES
 
 
