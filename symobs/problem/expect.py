@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, TooLarge, product_of, rank, root_of_pole
 from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
 from symobs.exact.algebraic.rounded_decimals import decimals_in, polynomial_of, rounds_to, written_out
-from symobs.exact.core.generators import NotWritten, identities, roots_in, symbols_in
+from symobs.exact.core.generators import NotWritten, functions_in, identities, roots_in, substitute, symbols_in
+from symobs.exact.time_functions.matrix_power import PowerOf, by_factors
 from symobs.formula.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.formula.expression.source import shown
 from symobs.formula.tree import Environment, Literal, Relation
@@ -58,16 +59,38 @@ def agrees(expected: Scalar | Matrix, found: Scalar | Matrix) -> bool:
 def functions_agree(left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
     """Return whether two values are equal as functions, by common exponentials, sines and cosines.
 
-    Decimals of the one on the left may be rounded.  Raises `TooLarge` where common ones would have too high a degree.
+    Decimals of the one on the left may be rounded.  Raises `TooLarge` where common ones would have too high a degree, and
+    for sequences that are equal at the first instants and are not seen to be equal at all.
     """
     if decimals_in(left):
         return agrees(left, right)
+    if any(isinstance(function, PowerOf) for function in functions_in([left, right])):
+        return _sequences_agree(left, right)
     try:
         meanings, relations = identities([left, right])
     except NotWritten as error:
         raise TooLarge(str(error)) from error
     environment = Environment(coefficients=meanings, relations=relations)
     return bool(verify(Relation((Literal(left), Literal(right)), ("=",)), environment)[0])
+
+
+def _sequences_agree(left: Any, right: Any) -> bool:
+    """Return whether two functions of k with powers λᵏ are equal at all k ≥ 0."""
+    if by_factors(left) == by_factors(right):
+        return True
+    for k in range(_INSTANTS):
+        try:
+            one, other = (substitute(value, {"k": Scalar.of(k)}) for value in (left, right))
+        except ZeroDivisionError:
+            return False
+        if not functions_agree(one, other):
+            return False
+    message = f"the sequences are equal at the first {_INSTANTS} instants"
+    raise TooLarge(message)
+
+
+#: At so many instants sequences are held against each other that are not equal by their form.
+_INSTANTS = 12
 
 
 # Expected roots and numbers: a + b sqrt(c), CRootOf(polynomial, index), sums of square roots.

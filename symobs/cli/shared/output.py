@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import sys
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     #: A complete file, the place it waits for, and how that was named.
-    Prepared = tuple[Path, Path, str | None]
+    Prepared = tuple[Path, Path, str]
 
 _ELSEWHERE = "name a file in a folder that can be written"
 #: What helps against reasons of the system; the others are helped by another file.
@@ -33,24 +33,18 @@ def write(content: str | bytes, target: str | None = None) -> None:
 
 def write_all(outputs: Sequence[tuple[str | bytes, str | None]]) -> None:
     """Write all results or none: files take their places when each is complete and the streams are served."""
-    with ExitStack() as leftovers:
-        files: list[Prepared] = []
+    files: list[Prepared] = []
+    try:
         for content, target in outputs:
-            if not _is_file(target):
-                continue
-            check_target(target)
-            place = Path(os.path.realpath(str(target)))
-            temporary = place.with_name(f".symobs-{os.urandom(8).hex()}")
-            leftovers.callback(temporary.unlink, missing_ok=True)
-            with _explained(target):
-                temporary.write_bytes(_bytes(content))
-                if place.exists():
-                    temporary.chmod(place.stat().st_mode & 0o777)
-            files.append((temporary, place, target))
+            if _is_file(target):
+                files.append(_prepared(_bytes(content), str(target)))
         for content, target in outputs:
             if not _is_file(target):
                 _send(content, target)
         _put_in_place(files)
+    finally:
+        for temporary, _, _ in files:
+            temporary.unlink(missing_ok=True)
 
 
 def copied(paths: Sequence[Path], folder: str) -> None:
@@ -63,7 +57,8 @@ def copied(paths: Sequence[Path], folder: str) -> None:
     try:
         target.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
-        raise InputError(reason_of(error), where=_shown(folder), repair="name a folder that can be written") from None
+        repair = "name a folder that can be written"
+        raise InputError(reason_of(error), where=_shown(folder), repair=repair) from None
     write_all([(path.read_bytes(), str(target / path.name)) for path in paths])
 
 
@@ -136,23 +131,63 @@ def _bytes(content: str | bytes) -> bytes:
 # -- files ------------------------------------------------------------------------------------------------------------
 
 
+def _prepared(data: bytes, target: str) -> Prepared:
+    """Write a file beside its place."""
+    import tempfile  # noqa: PLC0415 - only with -o
+
+    check_target(target)
+    place = Path(os.path.realpath(target))
+    with _explained(target):
+        mode = place.stat().st_mode & 0o777 if place.exists() else 0o666 & ~_umask()
+        with tempfile.NamedTemporaryFile(dir=place.parent, prefix=".symobs-", delete=False) as stream:
+            temporary = Path(stream.name)
+            try:
+                stream.write(data)
+                stream.close()
+                temporary.chmod(mode)
+            except BaseException:
+                temporary.unlink(missing_ok=True)
+                raise
+    return temporary, place, target
+
+
 def _put_in_place(files: Sequence[Prepared]) -> None:
     """Move complete files to their places; if one fails, undo those before it."""
-    with ExitStack() as undo:
-        for temporary, place, target in files:
-            with _explained(target):
-                before = place.read_bytes() if files[1:] and place.exists() else None
+    new = {place for _, place, _ in files if not place.exists()}
+    kept: dict[Path, Path] = {}
+    moved: list[Path] = []
+    try:
+        for temporary, place, name in files:
+            if len(files) > 1 and place not in new:
+                kept |= _kept(temporary, place)
+            with _explained(name):
                 temporary.replace(place)
-            undo.callback(_put_back, place, before)
-        undo.pop_all()
+            moved.append(place)
+    except BaseException:
+        for place in moved:
+            if place in new:
+                place.unlink(missing_ok=True)
+            elif place in kept:
+                kept[place].replace(place)
+        raise
+    finally:
+        for before in kept.values():
+            before.unlink(missing_ok=True)
 
 
-def _put_back(place: Path, before: bytes | None) -> None:
-    """Give a place the content that it had, or none."""
-    if before is None:
-        place.unlink()
-    else:
-        place.write_bytes(before)
+def _kept(temporary: Path, place: Path) -> dict[Path, Path]:
+    """Link an existing file to a second name; return that, or nothing if the file system has no links."""
+    before = temporary.with_suffix(".before")
+    with suppress(OSError):
+        before.hardlink_to(place)
+        return {place: before}
+    return {}
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
 
 
 # -- reasons ----------------------------------------------------------------------------------------------------------
@@ -169,7 +204,8 @@ def _explained(target: str | None) -> Iterator[None]:
         reason = reason_of(error)
         is_stream = target is None or target == "-"
         where, other = ("standard output", "name a file with -o") if is_stream else (_shown(target), _ELSEWHERE)
-        raise InputError(reason, where=where, repair=_REPAIRS.get(getattr(error, "errno", 0) or 0, other)) from None
+        repair = _REPAIRS.get(getattr(error, "errno", 0) or 0, other)
+        raise InputError(reason, where=where, repair=repair) from None
 
 
 def _shown(target: str | None) -> str:

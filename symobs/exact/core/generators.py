@@ -431,26 +431,37 @@ def _common_denominators(moving: Iterable[Function]) -> dict[Function, Scalar]:
     """Return for each function the denominator of all arguments that may depend on its own.
 
     exp(t), exp(t/(a + 1)) and exp(t*a/(a + 1)) do, exp(1), exp((a + 3)/(a + 1)) and exp(2/(a + 1)) as well; exp(x) and
-    exp(t*exp(x)/(exp(x) + 1)) do not: their numerators share no letter, and they have different denominators.
+    exp(t*exp(x)/(exp(x) + 1)) do not: over all that stands in a denominator, no term of one has the letters of the other's.
     """
-    groups: list[tuple[set[str], list[Function]]] = []
+    moving = tuple(moving)
+    below = {name for f in moving for name in f.argument.denominator.names}
+    groups: list[tuple[set[frozenset[str]], list[Function]]] = []
     for f in moving:
-        above, below = f.argument.numerator, f.argument.denominator
-        letters, members = {name for name in above.names if function_named(name) is None} or {"1"}, [f]
-        if not below.is_constant:
-            letters.add(str(below))
-            if any({name for name, _ in powers} <= set(below.names) for _, powers in above.terms()):
-                letters.add("1")
+        members = [f]
+        letters = {
+            frozenset(name for name, _ in powers if name not in below and function_named(name) is None)
+            for _, powers in f.argument.terms()
+        }
         for group in [group for group in groups if group[0] & letters]:
             groups.remove(group)
             letters |= group[0]
             members += group[1]
         groups.append((letters, members))
+    nested = {name for f in moving for name in f.argument.names}
     found: dict[Function, Scalar] = {}
     for _, members in groups:
-        shared = Matrix.of([[f.argument for f in members]]).common_denominator()
-        found |= dict.fromkeys(members, shared / gcd(*(coefficient for coefficient, _ in shared.terms())))
+        shared = _shared_denominator(members)
+        terms = {f: set(_coordinates(f.argument, shared)) for f in members}
+        for f in members:  # what stands in arguments, and has a term of its own there, is no product of the others
+            others = set[Scalar]().union(*(terms[other] for other in members if other != f))
+            is_apart = f.name in nested and not terms[f] <= others
+            found[f] = _shared_denominator([f]) if is_apart else shared
     return found
+
+
+def _shared_denominator(members: Sequence[Function]) -> Scalar:
+    shared = Matrix.of([[f.argument for f in members]]).common_denominator()
+    return shared / gcd(*(coefficient for coefficient, _ in shared.terms()))
 
 
 def _in_base(f: Function, steps: Steps, below: Scalar) -> Scalar:

@@ -90,6 +90,10 @@ class Matrix:
             if len(heights) != 1:
                 message = f"blocks of one row differ in height: {sorted(heights)}"
                 raise ValueError(message)
+        widths = {sum(part.shape[1] for part in line) for line in blocks}
+        if len(widths) > 1:
+            message = f"rows of blocks differ in width: {sorted(widths)}"
+            raise ValueError(message)
         if all(isinstance(part.table, fmpz_mat) for line in blocks for part in line):
             return _block_of_numbers(blocks)
         rows = [[entry for part in line for entry in part.rows[i]] for line in blocks for i in range(line[0].shape[0])]

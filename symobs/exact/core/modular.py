@@ -112,11 +112,14 @@ def scaled(matrix: nmod_mat, factor: int, prime: int) -> nmod_mat:
 
 
 def block(rows: list[list[nmod_mat | int]], prime: int) -> nmod_mat:
-    """Return the matrix of blocks; integers are 1×1 blocks."""
+    """Return the matrix of blocks; integers are 1×1 blocks.  Raises ValueError where their sizes do not match."""
     lines: list[list[int]] = []
     for parts in rows:
         tables = [
             [[part]] if isinstance(part, int) else [list(map(int, row)) for row in part.tolist()] for part in parts
         ]
-        lines += [[entry for table in tables for entry in table[i]] for i in range(len(tables[0]))]
+        lines += [[entry for part in line for entry in part] for line in zip(*tables, strict=True)]
+    if len({len(line) for line in lines}) > 1:
+        message = "rows of blocks differ in width"
+        raise ValueError(message)
     return nmod_mat(len(lines), len(lines[0]), [entry for line in lines for entry in line], prime)

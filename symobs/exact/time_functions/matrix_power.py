@@ -8,10 +8,22 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from flint import fmpz
+
 from symobs.exact.algebraic.polynomial_roots import factored
-from symobs.exact.core.generators import ZERO, Function, square_root, substitute, symbols_in
+from symobs.exact.core.generators import (
+    ZERO,
+    Function,
+    function_named,
+    functions_in,
+    square_root,
+    substitute,
+    symbols_in,
+)
 from symobs.exact.core.matrix import Matrix
 from symobs.exact.core.scalar import Scalar
+from symobs.exact.ideals import Ideal
+from symobs.exact.linear_algebra.elimination import modulo
 from symobs.exact.time_functions.matrix_exponential import MOST_STATES, MOST_STATES_WITH_PARAMETERS, NoClosedForm
 from symobs.ground.dataclass import dataclass
 
@@ -93,6 +105,31 @@ def _power(base: Scalar, imaginary: Scalar, count: int) -> tuple[Scalar, Scalar]
     for _ in range(abs(count)):
         real, turned = real * base - turned * imaginary, real * imaginary + turned * base
     return real, turned
+
+
+def by_factors(value: Scalar | Matrix) -> Scalar | Matrix:
+    """Return a value with λᵏ as the product of the powers of the factors of λ: of −1, of primes, of polynomials.
+
+    These are independent of each other, but for ((−1)ᵏ)² = 1: values that agree at all k ≥ 0 become equal.
+    """
+    found = {name: f for name in value.names if isinstance(f := function_named(name), PowerOf)}
+    meanings = {name: _of_factors(f) for name, f in found.items() if f.kind == "power" and not functions_in([f.base])}
+    value = value.substitute(meanings)
+    sign = PowerOf("power", INSTANT, Scalar.of(-1), ZERO).value
+    relation = Ideal.of([sign**2 - 1])
+    return modulo(value, relation) if isinstance(value, Matrix) else relation.simplified(value)
+
+
+def _of_factors(power: PowerOf) -> Scalar:
+    unit, factors = power.base.factors()
+    number = unit.fraction()
+    primes = [(Scalar.of(int(p)), e) for p, e in fmpz(abs(number.numerator)).factor()]
+    primes += [(Scalar.of(int(p)), -e) for p, e in fmpz(number.denominator).factor()]
+    primes += [(Scalar.of(-1), 1)] if number < 0 else []
+    whole = ONE
+    for factor, exponent in (*primes, *factors):
+        whole = whole * PowerOf("power", power.argument, factor, ZERO).value ** exponent
+    return whole
 
 
 def modes_of(chi: Scalar, variable: str) -> Iterator[Scalar]:

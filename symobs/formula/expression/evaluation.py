@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.exact import Complex, Field, Scalar
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.algebraic.real_algebraic import root_of_fraction
-from symobs.exact.algebraic.rounded_decimals import root_in_field
+from symobs.exact.algebraic.rounded_decimals import root_in_field, written_out
 from symobs.exact.core import generators
 from symobs.exact.core.generators import PI
 from symobs.exact.time_functions.matrix_power import PowerOf
@@ -294,6 +294,7 @@ class Evaluator:
         if len(rest) != 1 or isinstance(base, Complex) or self.instant in base.names:
             instead = "write λ**(m*k + n) with numbers m and n, and a real λ without k"
             raise self.source.error(f"the exponent {shown(str(value))} is no number of steps", place, instead)
+        base = written_out(base)  # λᵏ of a rounded λ rounds nothing
         often, beyond = self._power(base, place, slope), self._power(base, place, rest[0])
         return self._combined(PowerOf.of("power", often), place, beyond, "*")  # type: ignore[arg-type]
 

@@ -108,7 +108,7 @@ def _decided_case(step: CaseStep, environment: Environment, whole: Derivation) -
     """Return a case without the cases inside that fail, or, where it fails itself, the remark that it is undecided."""
     try:
         inside, _ = _decided(step.steps, inside_case(step, environment), whole)
-    except DerivationRejected:
+    except (DerivationRejected, *UNREADABLE):
         left_out("a case")
         relations = step.when.relations if isinstance(step.when, Conjunction) else (step.when,)
         arithmetic = Exact(environment)

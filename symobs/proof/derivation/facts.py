@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, apart_from_zero, from_coefficients, remainder
 from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
-from symobs.exact.core.generators import NotWritten, function_named, identities, substitute, symbols_named
+from symobs.exact.core.generators import function_named, identities, substitute, symbols_named
 from symobs.formula.tree import Conjunction, Environment, Exact, Relation, evaluate
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.ground.errors import DerivationRejected, WrongKind
@@ -19,7 +19,7 @@ from symobs.stability.criteria.stability import is_beyond, is_marginal, marginal
 from symobs.system.conditions import never_zero, sign_of, vanishing_factors
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from symobs.exact import Root
     from symobs.formula.tree import HoldsExactlyWhere
@@ -235,7 +235,9 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
     positive = _known_there(environment.positive, substitution)
     relations = tuple(value.numerator for value in _known_there(environment.relations, substitution) if value)
     domain = vanishing_factors(_known_there(environment.domain, substitution), environment.signs)
-    named, vanishing = _in_common_base(named, substitution)
+    named, vanishing = _in_common_base(named, replaced.values(), substitution)
+    moved = {name: value for name, value in named.items() if function_named(name) is not None}
+    relations = tuple(value.substitute(moved).numerator for value in relations) if moved else relations
     inside = replace(
         environment,
         values=replaced,
@@ -256,18 +258,16 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
 
 
 def _in_common_base(
-    named: Mapping[str, Scalar], substitution: Mapping[str, Scalar]
+    named: Mapping[str, Scalar], values: Iterable[Scalar | Matrix], substitution: Mapping[str, Scalar]
 ) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
     """Return what generators stand for on a stratum, and what vanishes there, in functions that are independent there.
 
-    e^{at/(a+1)} and e^{t/(a+1)} are powers of one exponential where a is a number.
+    e^{at/(a+1)} and e^{t/(a+1)} are powers of one exponential where a is a number.  Raises `NotWritten` where a common base
+    would have too high a degree.
     """
     functions = {name: f.value for name in named if (f := function_named(name)) is not None}
     kept = {name: value for name, value in functions.items() if symbols_named(name).isdisjoint(substitution)}
-    try:
-        meanings, vanishing = identities([*kept.values(), *(named[name] for name in functions)])
-    except NotWritten:
-        return dict(named), ()
+    meanings, vanishing = identities([*kept.values(), *named.values(), *values])
     return {n: value.substitute(meanings) for n, value in named.items() if n not in kept} | meanings, vanishing
 
 

@@ -17,7 +17,7 @@ from symobs.exact import (
     root_of_pole,
     roots_of,
 )
-from symobs.exact.core.generators import exponentials_in, symbols_named
+from symobs.exact.core.generators import NotWritten, exponentials_in, symbols_named
 from symobs.formula.tree import (
     Conjunction,
     Decimals,
@@ -130,7 +130,7 @@ def environment_on(
     """Return what the letters of a page mean on a stratum; None where the check does not see that it is described right."""
     try:
         return on_stratum(when, dict(substitution), page.environment)
-    except (TooLarge, DerivationRejected):
+    except (TooLarge, DerivationRejected, NotWritten):
         return None
 
 

@@ -123,6 +123,8 @@ class TestArithmetic:
             Matrix.of([[1, 2], [3]])
         with pytest.raises(ValueError, match="differ in height"):
             Matrix.block([[Matrix.zeros(1, 1), Matrix.zeros(2, 1)]])
+        with pytest.raises(ValueError, match="differ in width"):
+            Matrix.block([[Matrix.zeros(1, 2)], [Matrix.zeros(1, 3)], [Matrix.zeros(1, 1)]])
 
 
 class TestDeterminants:

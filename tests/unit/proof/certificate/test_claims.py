@@ -180,3 +180,14 @@ def test_a_denominator_that_is_zero_at_the_point_is_noticed(monkeypatch: pytest.
     monkeypatch.setitem(point.values, "a", 5)
     with pytest.raises(VanishingDenominator):
         point.scalar(1 / (a - 5))
+
+
+@pytest.mark.usefixtures("way")
+def test_blocks_whose_sizes_do_not_match_are_no_matrix() -> None:
+    P, Q, R = (Literal(Matrix.of([row])) for row in ([1, 2], [1, 2, 3], [7]))
+    for blocks, claimed in (
+        (((P,), (Q,), (R,)), [[1, 2], [1, 2], [3, 7]]),
+        (((R, Literal(Matrix.of([[2], [3]]))),), [[7, 2]]),
+    ):
+        with pytest.raises(CertificateRejected):
+            check(Claim(said(Block(blocks), Matrix.of(claimed)), Environment()))

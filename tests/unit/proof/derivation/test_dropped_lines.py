@@ -8,7 +8,7 @@ import pytest
 
 import symobs
 from symobs.exact import Matrix, Scalar
-from symobs.formula.tree import Environment, Literal
+from symobs.formula.tree import Environment, Formula, Literal, Power, Relation
 from symobs.formula.tree.term import Term
 from symobs.ground.errors import DerivationRejected, SymobsWarning
 from symobs.proof.certificate.claims import can_be_shown, verify
@@ -60,10 +60,14 @@ def test_a_bug_of_evaluation_is_no_false_claim(monkeypatch: pytest.MonkeyPatch) 
         verify(fact, e)
 
 
-def test_a_case_whose_check_fails_is_named_as_undecided_and_nothing_else_is() -> None:
-    """The line 1 = 2 in the case a = 0 is left out with its case; outside a case it stays an error."""
+ONE, NOTHING = Literal(Scalar.of(1)), Power(Literal(Scalar.of(0)), -1)
+
+
+@pytest.mark.parametrize("shown", [Literal(Scalar.of(2)), NOTHING], ids=["false", "unreadable"])
+def test_a_case_whose_check_fails_is_named_as_undecided_and_nothing_else_is(shown: Formula) -> None:
+    """The line 1 = 2, or 1 = 1/0, in the case a = 0 is left out with its case; outside a case it stays an error."""
     page = Builder(symobs.StateSpace("[a]", "[1]", symbols={"a": "real"}))
-    false = Equal((relation(page.value(1), 2),))
+    false = Equal((Relation((ONE, shown), ("=",)),))
     page.steps.append(CaseStep(relation(page.value(a), 0), (), (false,)))
     written = page.derivation()
     with pytest.raises(DerivationRejected):

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 from symobs.exact import Matrix, Root, Scalar, roots_of
+from symobs.exact.core.generators import function, identities
 from symobs.formula.phrases import ASSERTS, PHRASES
 from symobs.formula.tree import (
     Apply,
     Conjunction,
+    Environment,
     Evaluated,
     Fact,
     Formula,
@@ -28,7 +30,9 @@ from symobs.formula.tree import (
     Sum,
     Transpose,
 )
+from symobs.proof.certificate.claims import verify
 from symobs.proof.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Note, Sentence
+from symobs.proof.derivation.facts import on_stratum
 from tests.kit import tabled
 from tests.support.problems.steps import (
     A_IS,
@@ -57,6 +61,8 @@ if TYPE_CHECKING:
 
 
 pytestmark = pytest.mark.usefixtures("own_phrases")
+
+t = Scalar.symbol("t")
 
 
 # -- facts in sentences ------------------------------------------------------------------------------------------------
@@ -219,3 +225,24 @@ def test_a_matrix_of_rational_functions_is_stable_where_all_its_poles_are() -> N
     checked(unstable, Conclude(None, (Predicate("unstable", G),)))
     checked(unstable, Conclude(None, (Predicate("strictly_proper", G),)))
     refused(unstable, Conclude(None, (Predicate("stable", G),)))
+
+
+@pytest.mark.parametrize(
+    ("kind", "arguments", "value", "true"),
+    [
+        # e^{at/(a+1)} and e^{t/(a+1)} at a = 2: the one is the square of the other
+        ("exp", (a * t / (a + 1), t / (a + 1)), 2, Power(Letter("y"), 2)),
+        # cos ab and cos b at a = 2: cos 2b = 2 cos² b − 1
+        ("cos", (a * b, b), 2, Sum((Product((literal(2), Power(Letter("y"), 2))), literal(-1)))),
+    ],
+)
+def test_functions_that_depend_on_each_other_on_a_stratum_are_known_to(
+    kind: str, arguments: tuple[Scalar, Scalar], value: int, true: Formula
+) -> None:
+    first, second = (function(kind, argument) for argument in arguments)
+    meanings, vanishing = identities([first, second])
+    outside = Environment(values={"x": first, "y": second}, coefficients=meanings, relations=vanishing)
+    inside = on_stratum(said(a, value), {"a": Scalar.of(value)}, outside)
+    assert verify(Relation((Letter("x"), true), ("=",)), inside)[0]
+    assert verify(Relation((Letter("x"), true), ("!==",)), inside)[0] == ""
+    assert verify(Relation((Letter("x"), Letter("y")), ("=",)), inside)[0] == ""

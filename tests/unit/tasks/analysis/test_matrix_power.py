@@ -10,7 +10,7 @@ import sympy
 
 import symobs
 from symobs import StateSpace
-from symobs.ground.errors import CertificateRejected, InputError
+from symobs.ground.errors import CertificateRejected, InputError, SymobsError
 from symobs.problem import read
 from symobs.problem.expect import mismatches
 from symobs.problem.question import question_of
@@ -139,13 +139,32 @@ def test_values_and_questions_read_what_the_task_reads() -> None:
 
 
 @pytest.mark.parametrize(
-    ("entry", "is_met"), [("3^k-2^k", True), ("3*3^(k-1) - 2^(k+1)/2", True), ("3^k-2^(2*k)", False)]
+    ("A", "powers", "is_met"),
+    [
+        ("[2 1; 0 3]", "[2^k 3^k-2^k; 0 3^k]", True),
+        ("[2 1; 0 3]", "[2^k 3*3^(k-1) - 2^(k+1)/2; 0 3^k]", True),
+        ("[2 1; 0 3]", "[2^k 3^k-2^(2*k); 0 3^k]", False),
+        ("[6]", "[2^k*3^k]", True),
+        ("[4]", "[(-2)^k*(-2)^k]", True),
+        ("[-2]", "[(-1)^k*2^k]", True),
+        ("[1/2]", "[0.5^k]", True),
+        ("[2*a]", "[2^k*a^k]", True),
+        ("[6]", "[2^k*3^(k+1)]", False),
+    ],
 )
-def test_powers_of_k_are_read_where_an_answer_is_expected(entry: str, is_met: bool) -> None:  # noqa: FBT001
-    """By hand: A = [2 1; 0 3] has Aᵏ = [2ᵏ, 3ᵏ − 2ᵏ; 0, 3ᵏ]."""
-    text = f'task = "matrix_exponential"\n[plant]\nA = "[2 1; 0 3]"\ndt = true\n[expect]\nmatrix = "[2^k {entry}; 0 3^k]"\n'
-    found = read(text)
+def test_powers_of_k_are_read_where_an_answer_is_expected(A: str, powers: str, is_met: bool) -> None:  # noqa: FBT001
+    data = f'task = "matrix_exponential"\n[symbols]\na = "real"\n[plant]\nA = "{A}"\ndt = true\n'
+    found = read(f'{data}[expect]\nmatrix = "{powers}"\n')
     assert (not mismatches(found.solve(), found.expect)) == is_met
+
+
+def test_sequences_that_are_equal_at_first_are_undecided() -> None:
+    """Re iᵏ = cos πk/2: both are 1, 0, −1, 0, …, and nothing here says that of all k."""
+    data = 'task = "matrix_exponential"\n[plant]\nA = "[0 1; -1 0]"\ndt = true\n'
+    cosine, sine = "cos(pi*k/2)", "sin(pi*k/2)"
+    found = read(f'{data}[expect]\nmatrix = "[{cosine} {sine}; -{sine} {cosine}]"\n')
+    with pytest.raises(SymobsError, match="equal at the first 12 instants"):
+        mismatches(found.solve(), found.expect)
 
 
 def test_an_exponent_that_is_no_number_of_steps_is_refused() -> None:
