@@ -262,7 +262,7 @@ def _end(matrix: Matrix, asked: str | None, *, discrete: bool) -> Fraction:
 # -- how --------------------------------------------------------------------------------------------------------------
 
 
-def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[Sequence[int]], list[Sequence[int]]]:
+def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
     """Return the heights of every signal in fine parts, within a quarter of the finest ones that are shown.
 
     They are those of every half segment, and fewer from the end to twice the end.  Segments are halved where a response
@@ -289,7 +289,7 @@ def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[Sequenc
     return _seen(signals, states, most // segments), _seen(signals, [line[behind:] for line in after], 1)
 
 
-def _seen(signals: Signals, states: list[list[int]], every: int) -> list[Sequence[int]]:
+def _seen(signals: Signals, states: list[list[int]], every: int) -> list[tuple[int, ...]]:
     """Return the heights of every signal at some of the instants."""
     some = [line[::every] for line in states]
     return [course(row, some) for _, _, row, _ in signals.rows]
@@ -314,7 +314,7 @@ def _at_instants(signals: Signals, step: Fraction, count: int) -> list[list[int]
         raise NoResponse(_TOO_WIDE) from None
 
 
-def _stepped(signals: Signals, count: int) -> list[list[int]]:
+def _stepped(signals: Signals, count: int) -> list[tuple[int, ...]]:
     """Return the values at 0, 1, 2, … in fine parts, rounded from exact ones."""
     from symobs.exact.time_functions.matrix_exponential import fraction_near  # noqa: PLC0415 - FLINT
 
@@ -323,7 +323,8 @@ def _stepped(signals: Signals, count: int) -> list[list[int]]:
         states.append([fraction_near(entry) for entry in state.entries])
         state = signals.matrix @ state
     return [
-        [round(sum(map(mul, row, state), Fraction(0)) * _FINE) for state in states] for _, _, row, _ in signals.rows
+        tuple(round(sum(map(mul, row, state), Fraction(0)) * _FINE) for state in states)
+        for _, _, row, _ in signals.rows
     ]
 
 

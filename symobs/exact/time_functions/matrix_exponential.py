@@ -340,11 +340,13 @@ def _doubled(
     if first is None:
         return None
     lines, columns = [_packed(row, width) for row in first], len(first[0])
-    ones, off, most = _packed([fmpz(1)] * columns, width), 2, max(abs(x) for row in first for x in row) + 2
+    ones, off, most = _packed([fmpz(1)] * columns, width), 2, max(abs(int(x)) for row in first for x in row) + 2
     while columns < count:
         table = _whole(power, bits)
-        norm = max(sum(map(abs, row)) for row in table) if table else fmpz(0)
-        if table is None or norm * most >> (width - 2):
+        if table is None:
+            return None
+        norm = max(int(sum(map(abs, row))) for row in table)
+        if norm * most >= 1 << (width - 2):
             return None
         more = min(columns, count - columns)
         fields = fmpz(1) << width * more
@@ -356,19 +358,16 @@ def _doubled(
         ones += ones_there << width * columns
         off = max(off, (((norm + 2 * order) * off + 2 * order * most) >> bits) + 1)
         most, columns, power = max(most, (norm * most >> bits) + 1), columns + more, power * power
-    if off >> (kept - 1):
+    if off >= 1 << (kept - 1):
         return None
     half = (ones << (width - 1)) + (ones << (kept - 1))
     views = [memoryview(int((x + half) >> kept).to_bytes(columns * width // 8, "little")) for x in lines]
-    if most >> (kept + 126):
-        whole, size, below = width // 8, (width - kept) // 8, 1 << (width - 1 - kept)
-        places = range(0, whole * count, whole)
-        return [[int.from_bytes(view[at : at + size], "little") - below for at in places] for view in views]
-    pairs = [(view.cast("q")[1 :: width // 64], view.cast("Q")[:: width // 64]) for view in views]
-    return [[above << 64 | below for above, below in zip(*pair, strict=True)][:count] for pair in pairs]
+    whole, size, below = width // 8, (width - kept) // 8, 1 << (width - 1 - kept)
+    places = range(0, whole * count, whole)
+    return [[int.from_bytes(view[at : at + size], "little") - below for at in places] for view in views]
 
 
-def _whole(balls: arb_mat, bits: int) -> list[list[fmpz]] | None:
+def _whole(balls: arb_mat, bits: int) -> list[list[Any]] | None:
     """Return enclosures in parts of 2⁻ᵇⁱᵗˢ, off by at most two; None where they are wider."""
     scaled = balls * arb(2) ** bits
     near = scaled.mid()

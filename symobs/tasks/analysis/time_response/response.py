@@ -132,7 +132,7 @@ def rows_of(table: Matrix) -> list[tuple[Fraction, ...]]:
     return [tuple(entry.fraction() for entry in row) for row in table.rows]
 
 
-def course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> Sequence[int]:
+def course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> tuple[int, ...]:
     """Return row · state, in whole parts, at all instants; `states` are the courses of the components of the state."""
     common = lcm(*(part.denominator for part in row))
     first, *others = [(int(part * common), state) for part, state in zip(row, states, strict=True) if part] or [
