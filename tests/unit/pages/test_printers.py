@@ -551,6 +551,21 @@ def test_discrete_time_carries_an_index() -> None:
     assert LatexPrinter("z").inline(Apply("det", RESOLVENT)) == r"\det(zI-A)"
 
 
+def test_a_formula_is_printed_anew_in_another_style_or_time() -> None:
+    table, state = Literal(Matrix.of([[1], [2]])), Letter("x")
+    printer = LatexPrinter()
+    shown, inside = printer.unbroken(table), printer.inline(table)
+    assert "bmatrix" in shown
+    assert "smallmatrix" in inside
+    assert (printer.unbroken(table), printer.inline(table)) == (shown, inside)
+    assert printer.unbroken(state) == "x"
+    printer.keep_time(("z", True))
+    assert printer.unbroken(state) == "x_k"
+    flat = TextPrinter()
+    assert "\n" in flat.display([Relation((state, table), ("=",))])
+    assert flat.inline(table) == "[1; 2]"
+
+
 def test_declared_symbols_are_printed_as_declared() -> None:
     assert LatexPrinter(symbols={"m": r"m_{\text{cart}}"}).inline(lit(2 * m * b)) == r"2bm_{\text{cart}}"
 

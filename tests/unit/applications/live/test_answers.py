@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import subprocess
 import sys
@@ -21,6 +22,7 @@ from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 from symobs.applications.live import answer
 from symobs.applications.live.assets import MOST_BYTES
 from symobs.applications.live.request import SHORT, parsed
+from symobs.applications.live.time_responses import _last_above
 from symobs.pages.formats.json import result_object
 from symobs.problem import validate
 from symobs.tasks.result import result_type, tasks
@@ -415,3 +417,14 @@ def test_poles_of_an_optimal_loop_follow_the_weight() -> None:
     }
     marks = [mark for mark in asked(problem, at={"q": "4"}, cards_at=True)["marks"] if mark["kind"] == "loop"]
     assert sorted((float(mark["re"]), float(mark["im"])) for mark in marks) == [(-1, -1), (-1, 1)]
+
+
+@given(st.lists(st.integers(-60, 60), min_size=3, max_size=12), st.integers(0, 80), st.booleans())
+def test_the_last_segment_above_a_band_is_the_last_of_all(line: list[int], band: int, is_continuous: bool) -> None:  # noqa: FBT001
+    """Each segment bulges by an eighth of the larger second difference at its ends, rounded up; an end has none."""
+    second = [a - 2 * b + c for a, b, c in zip(line, line[1:], line[2:], strict=False)]
+    bends = [second[0], *second, second[-1]]
+    bulges = [max(abs(a), abs(b)) // 8 + 1 if is_continuous else 0 for a, b in itertools.pairwise(bends)]
+    most = [max(abs(a), abs(b)) + bulge for a, b, bulge in zip(line, line[1:], bulges, strict=False)]
+    wanted = max((k + 1 for k, each in enumerate(most) if each > band), default=0)
+    assert _last_above(band, line, is_continuous=is_continuous) == wanted

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from timeit import repeat
 from typing import TYPE_CHECKING
 
 import mpmath
@@ -16,7 +17,7 @@ from symobs.exact.time_functions.matrix_exponential import state_response
 from symobs.formula.figures import TimeResponse
 from symobs.formula.tree import Exact, Literal, evaluate
 from symobs.ground.errors import DerivationRejected
-from symobs.proof.derivation import Plot
+from symobs.proof.derivation import Plot, plot_check
 from symobs.system import StateSpace
 from tests.kit import SERVO, tabled, text_of
 from tests.support.derivations import untrue_responses
@@ -195,3 +196,42 @@ def test_bits_are_lost_to_what_grows_and_not_to_large_entries(
 
 def numbers(table: Matrix) -> list[list[Fraction]]:
     return [[entry.fraction() for entry in row] for row in table.rows]
+
+
+@pytest.mark.parametrize("bits", [(16, 1024), (32, 1024), (64, 1024), (96, 1024), (128, 1024)])
+def test_a_response_is_found_to_one_part_whatever_bits_it_begins_with(
+    bits: tuple[int, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """(M + I)² = 0 with entries of a thousand, e^{Mt} = e^{-t} (I + (M + I) t), beside what grows to e^{180}."""
+    from symobs.exact.time_functions import matrix_exponential as writer  # noqa: PLC0415 - the only test that sets its bits
+
+    monkeypatch.setattr(writer, "_BITS", bits)
+    table = Matrix.of([[999, -1000, 0], [1000, -1001, 0], [0, 0, 30]])
+    found = state_response(table, (Fraction(1), Fraction(0), Fraction(1, 3)), Fraction(1, 100), 601, 10**15)
+    with mpmath.workdps(120):
+        for k in range(0, 601, 25):
+            t = mpmath.mpf(k) / 100
+            true = mpmath.exp(-t) * (1 + 1000 * t), mpmath.exp(-t) * 1000 * t, mpmath.exp(30 * t) / 3
+            assert all(abs(line[k] - 10**15 * value) <= 1 for line, value in zip(found, true, strict=True))
+
+
+def test_errors_add_up_side_by_side_and_the_larger_counts_one_above_the_other() -> None:
+    one, other = plot_check._Enclosed.of([[1, 2]], 5), plot_check._Enclosed.of([[3, 4]], 7)
+    assert one.beside(other) == ([[1, 2, 3, 4]], 10, 12)
+    assert one.above(other) == ([[1, 2], [3, 4]], 7, 7)
+
+
+def test_sixteen_times_as_many_instants_take_little_longer() -> None:
+    """In one process: 3 times as long, and 11 where each instant is rounded by itself."""
+    table = Matrix.of([[-1, 2, 0, 1], [0, -3, 1, 0], [1, 0, -2, 5], [0, 1, -5, -2]])
+    few, many = (
+        min(
+            repeat(
+                lambda count=count: state_response(table, (1,) * 4, Fraction(6, count), count, 10**15),
+                number=2,
+                repeat=7,
+            )
+        )  # type: ignore[misc]
+        for count in (65, 1025)
+    )
+    assert many < 7 * few
