@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 
-import pytest
-
+from tests.kit import tabled
 from tests.support.paths import ROOT
 
 PATH = re.compile(r"`((?:symobs|tests|docs|worked_examples|latex_templates|\.ci|\.github)/[\w./]+)`")
@@ -17,7 +16,7 @@ def text_of(page: str) -> str:
     return (ROOT / page).read_text("utf-8")
 
 
-@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md", "docs/measurements.md"])
+@tabled
 def test_every_path_exists(page: str) -> None:
     text = text_of(page)
     named = [path for path in PATH.findall(text) if "NAME" not in path]

@@ -15,6 +15,7 @@ from symobs.formula.convention.convention import read_convention
 from symobs.ground.errors import InputError, ProblemErrors
 from symobs.pages.formats.pdf import compiled
 from symobs.system import Symbols
+from tests.kit import tabled
 from tests.support.tampering import injection
 from tests.support.tampering.injection import SECRET, TEXTS, corpus, printable, problem
 from tests.support.tools.browser import Browser
@@ -57,7 +58,7 @@ def test_markdown_shows_hostile_texts_and_means_nothing(tmp_path: Path) -> None:
     assert list(injection.faults_of_markdown(part(tmp_path, 41), tmp_path)) == []
 
 
-@pytest.mark.parametrize("text", [r"\input{CANARY}", r"\end{document}", r"\jobname"])
+@tabled
 def test_a_text_that_is_not_escaped_is_noticed(
     text: str, monkeypatch: pytest.MonkeyPatch, require_tool: RequireTool, tmp_path: Path
 ) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import sympy
 
+from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import fresh
 
@@ -112,7 +113,7 @@ def test_the_error_in_what_is_printed_is_found_as_shown(tmp_path: Path) -> None:
     assert shown in run.out
 
 
-@pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md", "docs/guide.md", "docs/architecture.md"])
+@tabled
 def test_every_link_leads_somewhere(page: str) -> None:
     text = (ROOT / page).read_text("utf-8")
     links = LINK.findall(text)

@@ -9,6 +9,7 @@ import pytest
 
 from symobs.pages.formats.json import result_object
 from symobs.problem import read
+from tests.kit import tabled
 
 pytestmark = pytest.mark.slow
 
@@ -78,10 +79,7 @@ def test_equations_that_are_too_long_leave_a_stratum_undecided() -> None:
     assert found["verdict"] == "undecided"
 
 
-@pytest.mark.parametrize(
-    "polynomial",
-    ["z - 1", "(z - 1) (z - 1) (z - 1) (z + h)", "z^4 + (1 - h) z^3 + (h - 3) z^2 + (1 - h) z + h"],
-)
+@tabled
 def test_a_root_at_1_for_all_parameters_leaves_no_region(polynomial: str) -> None:
     # The map from the disc to the half-plane carries 1 to infinity: the table began with a zero, which raised.
     result = solved(f"""

@@ -16,7 +16,7 @@ import mpmath
 import pytest
 
 import symobs
-from tests.kit import SERVO
+from tests.kit import SERVO, tabled
 from tests.support.tools import octave
 from tests.support.tools.modelica import Block
 
@@ -226,10 +226,7 @@ def test_modelica_in_continuous_time(name: str) -> None:
     assert [left for left, _ in block.equations] == [("der", "x"), "x_hat" if "observer" in name else "u"]
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["block B\nequation\nend C;", "block B\n  Real x[1]\nequation\nend B;", "block B\nequation\n  y = x;\nend B;"],
-)
+@tabled
 def test_the_reader_refuses_what_is_not_modelica(text: str) -> None:
     with pytest.raises(SyntaxError):
         Block(text)

@@ -22,6 +22,7 @@ import sympy
 import symobs
 from symobs import problem
 from symobs.ground.errors import SymobsError
+from tests.kit import tabled
 
 TABLE, BOOKS = (
     tomllib.loads(Path(__file__).with_name(f"{name}_problems.toml").read_text("utf-8"))
@@ -343,7 +344,7 @@ def test_a_published_problem_goes_through_at_first_try(row: dict[str, Any]) -> N
     data.printed(result)
 
 
-@pytest.mark.parametrize("task", ["state_feedback", "observer", "reduced_order_observer", "compensator"])
+@tabled
 def test_a_design_for_other_poles_is_seen(task: str) -> None:
     """The checks hold a design to the polynomial of its row: with another one they fail."""
     rows = [row for row in ROWS if row.get("book") and row["task"] == task and not {"verdict", "refused"} & row.keys()]

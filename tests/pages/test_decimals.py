@@ -16,29 +16,14 @@ from symobs.ground.errors import DerivationRejected
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.text_printer import TextPrinter
 from symobs.proof.derivation import Derivation, Equal
+from tests.kit import tabled
 
 
 def scalar(text: str) -> Scalar:
     return Scalar.of(Fraction(text))
 
 
-@pytest.mark.parametrize(
-    ("exact", "shown", "so"),
-    [
-        ("-80539/49", "-1643.65", True),
-        ("-80539/49", "-1643.653", True),
-        ("-80539/49", "-1643.65306", True),
-        ("-832340/49", "-16986.53", True),
-        ("-832340/49", "-16986.5", True),
-        ("-80539/49", "-1643.64", False),  # one unit off
-        ("-832340/49", "-16986.52", False),
-        ("25/68", "0.3676", True),
-        ("25/68", "0.3677", False),
-        ("2/3", "0.66", False),  # cut off
-        ("60", "60", True),
-        ("601/10", "60", False),  # without a point it reads as exact
-    ],
-)
+@tabled
 def test_what_is_a_rounding(exact: str, shown: str, so: bool) -> None:  # noqa: FBT001 - the answer to the question
     assert is_rounding(scalar(exact), scalar(shown)) is so
 
@@ -69,7 +54,7 @@ def test_numbers_are_written_with_their_point() -> None:
     assert LatexPrinter().inline(table) == r"\begin{bmatrix}-0.0735&60\end{bmatrix}"
 
 
-@pytest.mark.parametrize("shown", ["0.3677", "0.3675", "-0.3676"])
+@tabled
 def test_a_page_with_a_wrong_digit_is_not_shown(shown: str) -> None:
     line = Relation((Literal(scalar("25/68")), Decimals(scalar(shown))), ("≈",))
     with pytest.raises(DerivationRejected):

@@ -123,7 +123,7 @@ def test_a_long_row_of_points_goes_on_in_a_second_table() -> None:
     assert tables[-1][1][-1] == str(23 * 24 // 2)
 
 
-@pytest.mark.parametrize("name", ["latex", "html", "text"])
+@tabled
 def test_what_is_filled_in_stands_on_questions_alone(name: str, folder: Path) -> None:
     more = 'name = true\nanswers = "lines"\nspace = 4\n'
     marks = {

@@ -76,26 +76,7 @@ def number(text: str) -> Scalar:
 # -- one number --------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("exact", "digits", "shown"),
-    [
-        ("1/3", 5, "0.33333"),
-        ("2/3", 3, "0.667"),
-        ("832340/49", 5, "16987"),
-        ("2453609479/2450", 5, "1.0015e6"),
-        ("999996/100000", 5, "10.000"),  # the rounding of 9.99996 has a digit more before the point
-        ("539/50", 5, "10.78"),  # exact, without zeros behind
-        ("107812/10000", 5, "10.781"),
-        ("1/30000", 5, "3.3333e-5"),
-        ("1/100000", 5, "1e-5"),
-        ("1234567890", 5, "1234567890"),  # takes no more room than 1.2346·10⁹
-        ("123456789012", 5, "1.2346e11"),
-        ("125/1000", 2, "0.12"),  # of two that are equally near the even one
-        ("135/1000", 2, "0.14"),
-        ("19/20", 1, "1"),
-        ("0", 5, "0"),
-    ],
-)
+@tabled
 def test_how_a_number_is_written(exact: str, digits: int, shown: str) -> None:
     assert significant(number(exact), digits) == shown
     assert is_correctly_written(number(exact), shown, digits)
@@ -346,7 +327,7 @@ def test_published_decimals_stand_on_the_page() -> None:
     assert r"778.2s+3691}{s^2+19.6s+151.2}" in str(regulator().to("latex", digits=4))
 
 
-@pytest.mark.parametrize("name", ["latex", "html", "text", "markdown", "beamer"])
+@tabled
 def test_every_format_shows_the_same_decimals(name: str) -> None:
     page = str(swinging().to(name))
     assert "≈" in page or r"\approx" in page

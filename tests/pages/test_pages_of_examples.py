@@ -19,6 +19,7 @@ from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.tasks.result import render
+from tests.kit import tabled
 from tests.pages.test_worked_examples import solved
 from tests.support.examples import EXAMPLES as FILES
 from tests.support.examples import document_of
@@ -117,7 +118,7 @@ def test_every_formula_has_the_characters_that_it_has_in_latex(name: str) -> Non
     assert list(differing(document_of(name))) == []
 
 
-@pytest.mark.parametrize("convention", ["S0", "S1", "S2", "S3", "S4"])
+@tabled
 @pytest.mark.parametrize("name", ["output_feedback_servo", "servo_minimal_order", "servo_tracking"])
 def test_formulas_in_the_letters_of_other_books(name: str, convention: str) -> None:
     found, results = solved(next(path for path in FILES if path.stem == name))

@@ -11,6 +11,7 @@ import symobs
 from symobs.ground.errors import InputError
 from symobs.problem import read
 from symobs.tasks.result.writers import render
+from tests.kit import tabled
 
 TWO = """
     tasks = ["state_feedback", "tracking"]
@@ -58,7 +59,7 @@ KEY = """
 """
 
 
-@pytest.mark.parametrize("detail", ["full", "outline", "answer"])
+@tabled
 def test_a_part_that_is_answered_already_keeps_its_heading_and_says_where(detail: str) -> None:
     problem = read(KEY)
     text = str(render(replace(problem.document(problem.solve()), detail=detail), "text"))

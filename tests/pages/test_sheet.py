@@ -63,7 +63,7 @@ def test_all_questions_come_first_then_all_solutions(folder: Path) -> None:
     assert "Design an observer with the poles -10, -10." in run.out
 
 
-@pytest.mark.parametrize("name", ["latex", "beamer", "html", "text", "markdown"])
+@tabled
 def test_a_problem_without_a_title_has_the_name_of_its_file(name: str, folder: Path) -> None:
     (folder / "untitled.toml").write_text('task = "observability"\n[plant]\nA = "[1]"\nC = "[1]"\n', "utf-8")
     run = inside("sheet", "untitled.toml", "--format", name, folder=folder)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from symobs.tasks.result import registry, writers
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -35,7 +36,7 @@ print(found.modes[0]["rank"], type(found.fixed_polynomial).__module__.split(".")
 """
 
 
-@pytest.mark.parametrize("module", ["sympy.polys.rootoftools", "sympy.solvers", "mpmath.functions"])
+@tabled
 def test_an_import_of_sympy_that_is_interrupted_is_made_anew(module: str) -> None:
     # module 'sympy' has no attribute 'polys', for as long as the session lasted.
     run = subprocess.run(

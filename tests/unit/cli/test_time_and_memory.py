@@ -193,7 +193,7 @@ def slow_observer(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("slow_observer")
-@pytest.mark.parametrize("form", ["text", "latex", "html", "markdown"])
+@tabled
 def test_a_page_keeps_the_tasks_that_were_finished(form: str) -> None:
     alone = inside("solve", "-", "--format", form, stdin=NOT_OBSERVABLE.encode()).out
     run = inside("solve", "-", "--format", form, "--timeout", f"{LONG:g}", stdin=THREE_TASKS.encode())

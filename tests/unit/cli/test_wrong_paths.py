@@ -72,6 +72,6 @@ def test_what_cannot_be_written_is_named_before_work(command: list[str], path: s
 
 
 @pytest.mark.parametrize("command", CHOOSING, ids=lambda command: command[-1])
-@pytest.mark.parametrize("path", ["missing.toml", "folder.toml", "picture.toml"])
+@tabled
 def test_what_cannot_be_chosen_is_named(command: list[str], path: str) -> None:
     assert path in refusal(*command, path)

@@ -19,6 +19,7 @@ from symobs.exact.floating.stability_margin import deviation, loop_matrix, own_m
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.expression import parse_scalar
 from symobs.ground.errors import InputError
+from tests.kit import tabled
 
 
 def matrix(rows: Any) -> Matrix:
@@ -75,7 +76,7 @@ def test_margins_are_below_those_of_the_eigenvalues_and_near_them() -> None:
     assert min(told) > 10
 
 
-@pytest.mark.parametrize("number", ["1", "-1", "1 + 1/10^40"])
+@tabled
 def test_a_root_on_or_barely_beyond_the_circle_is_not_proved(number: str) -> None:
     value = parse_scalar(number, {}, where="").fraction()
     beyond = Realisation(matrix([[value]]), *(matrix([[1]]),) * 3)

@@ -16,7 +16,7 @@ from symobs.pages.formats.templates import fill
 from symobs.pages.formats.text import WIDTH, Text
 from symobs.pages.printers.latex_printer import LETTERS, LatexPrinter, escape
 from symobs.proof.derivation import Define, Derivation, Diagram, Equal, Note
-from tests.kit import SERVO
+from tests.kit import SERVO, tabled
 from tests.support.examples import document_of
 from tests.support.problems.steps import HandWritten, document, said, with_a_case
 
@@ -125,7 +125,7 @@ def test_a_page_in_another_language_is_typeset_without_a_fault(faults: Callable[
     assert faults(source.replace(r"\end{document}", f"{english}\n\\end{{document}}")) == []
 
 
-@pytest.mark.parametrize("degree", [1, 4, 8, 14])
+@tabled
 def test_a_loop_fits_its_page_whatever_its_labels(degree: int, faults: Callable[[str], list[str]]) -> None:
     long = sum((Scalar.of(10**5 + k) * s**k for k in range(degree)), s**degree)
     for plant, compensator in ((1 / s, 1 / long), (1 / long, 1 / s), (1 / long, 1 / long)):

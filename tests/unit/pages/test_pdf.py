@@ -17,6 +17,7 @@ import pytest
 from symobs.ground.errors import TypesettingError
 from symobs.pages.formats import pdf
 from symobs.pages.formats.pdf import Pdf, compiled
+from tests.kit import tabled
 from tests.support.examples import document_of
 from tests.support.problems.steps import document, with_a_case
 from tests.support.tools.command_line import SAFETY
@@ -76,7 +77,7 @@ def test_hostile_text_is_shown_and_does_nothing(text: str, require_tool: Require
         assert "".join(words.split()).count("".join(part.split())) >= 2 * (part in text)
 
 
-@pytest.mark.parametrize("name", ["/etc/passwd", "../secret.tex", ".hidden"])
+@tabled
 def test_tex_reads_nothing_outside_its_folder(name: str, require_tool: RequireTool) -> None:
     require_tool("pdflatex")
     with pytest.raises(TypesettingError, match="not found"):

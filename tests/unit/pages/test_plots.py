@@ -128,7 +128,7 @@ def test_svg_is_whole_and_needs_nothing_else(name: str) -> None:
 # -- matplotlib -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["three_components", "four_pieces", "sampled"])
+@tabled
 def test_matplotlib_draws_the_same(name: str) -> None:
     latex, text = printers(name)
     picture = ALL[name][0]()

@@ -570,7 +570,7 @@ def test_declared_symbols_are_printed_as_declared() -> None:
     assert LatexPrinter(symbols={"m": r"m_{\text{cart}}"}).inline(lit(2 * m * b)) == r"2bm_{\text{cart}}"
 
 
-@pytest.mark.parametrize("form", ["b_0", "b^c", "b_1^c", r"\hat b'", r"\mathrm{a}^{bc}"])
+@tabled
 def test_a_declared_form_with_a_superscript_is_raised_in_parentheses(form: str) -> None:
     """TeX knows no second superscript, and a reader would take both for one."""
     raised = LatexPrinter(symbols={"b": form}).inline(lit(b * b))

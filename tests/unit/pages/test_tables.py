@@ -17,6 +17,7 @@ from symobs.pages.tables import fitted
 from symobs.proof.derivation import Define, Derivation, Sentence, Tabulate
 from symobs.proof.derivation.routh_check import findings_of
 from symobs.stability.criteria.routh_table import routh_table
+from tests.kit import tabled
 from tests.support.problems.steps import document, said
 
 if TYPE_CHECKING:
@@ -75,7 +76,7 @@ WIDE = [
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("width", [20, 40, 76])
+@tabled
 @pytest.mark.parametrize("value", WIDE, ids=str)
 def test_names_stand_for_what_they_name(value: Scalar, width: float) -> None:
     """What is told below, put into the table from above to below, gives the table back."""

@@ -65,7 +65,7 @@ def test_a_broken_template_is_told_with_its_line(text: str, place: str, reason: 
     assert "symobs" in line.partition(";")[2]
 
 
-@pytest.mark.parametrize("name", ["/etc/passwd", "../secret.tex", "sub/../../secret.tex", "symobs/../../README.md"])
+@tabled
 def test_a_template_reads_no_file_outside_its_folder(name: str, tmp_path: Path) -> None:
     folder = tmp_path / "templates"
     folder.mkdir()

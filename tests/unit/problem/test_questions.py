@@ -50,7 +50,7 @@ def test_the_question_states_what_was_asked(task: str, specification: str, said:
     assert said in asked(specification, task)
 
 
-@pytest.mark.parametrize("gain", ['"2, 3"', "[2, 3]", '"[2 3]"', "[[2, 3]]"])
+@tabled
 def test_a_gain_of_a_flat_list_is_asked_as_a_row(gain: str) -> None:
     assert asked(f"K = {gain}", "state_feedback") == asked('K = "[2, 3]"', "state_feedback")
 

@@ -166,9 +166,7 @@ def test_a_sheet_is_known_by_its_keys_even_where_it_is_broken(text: str) -> None
     assert is_sheet(text)
 
 
-@pytest.mark.parametrize(
-    "text", ["", "title = ", 'title = "T"\nlanguage = "en"', '{"task": "pbh", "name": 1}', "[plant]\nname = 1"]
-)
+@tabled
 def test_anything_else_is_a_problem(text: str) -> None:
     assert not is_sheet(text)
 

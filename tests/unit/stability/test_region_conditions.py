@@ -112,7 +112,7 @@ def test_known_regions_in_discrete_time(name: str) -> None:
     holds_the_same(found, [read(part) for part in expected], {})
 
 
-@pytest.mark.parametrize("text", ["1, 0, 2, h2, h1", "1, h1, -1 - h1^2, 1 + h2^2", "1, h1, -h1, h2"])
+@tabled
 def test_empty_regions(text: str) -> None:
     found = stable_where(polynomial(text), "s", {})
     assert found.verdict == "no"

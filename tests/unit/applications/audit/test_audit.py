@@ -257,7 +257,7 @@ def test_a_convention_of_the_user_s_own_lies_beside_the_file(tmp_path: Path) -> 
     assert run.out.endswith("4 printed equations, 1 wrong.\n")
 
 
-@pytest.mark.parametrize("name", ["text", "markdown", "json"])
+@tabled
 def test_every_format_says_what_is_wrong(name: str, files: dict[str, str], tmp_path: Path) -> None:
     target = tmp_path / "found"
     assert inside("audit", files["wrong"], "--format", name, "-o", str(target)).code == 4

@@ -47,7 +47,7 @@ def test_a_decomposition_in_another_basis_is_right() -> None:
     assert mixed == dict.fromkeys("TABC", "wrong") | {"C": mixed["C"]}
 
 
-@pytest.mark.parametrize("T", ["[1 1; 1 1]", "[1 0]", "[1 0; 0 1; 1 1]", "[0 0; 0 0]"])
+@tabled
 def test_coordinates_that_are_none_are_wrong(T: str) -> None:
     assert verdicts(PARTS, {"T": T, "A": "[-1 0; 0 -2]"})["T"] == "wrong"
 

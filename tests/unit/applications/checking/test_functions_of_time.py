@@ -28,7 +28,7 @@ def test_the_letters_of_the_page_name_the_parts(x: str, y: str) -> None:
     assert STEP.report({"response": {x: STATE, y: FIRST}}).verdict == "right"
 
 
-@pytest.mark.parametrize("name", ["exp(A t)", "exp(A*t)", "exp(At)", "matrix"])
+@tabled
 def test_the_matrix_exponential_is_called_as_on_the_page(name: str) -> None:
     report = EXPONENTIAL.report(f"{name} = [1 1 - exp(-t); 0 exp(-t)]")
     assert (report.verdict, report.first_false) == ("right", None)

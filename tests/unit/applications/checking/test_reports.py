@@ -96,7 +96,7 @@ def test_a_line_on_signals_does_not_tell_the_gains(line: str, place: str) -> Non
         assert not re.search(r"\[-?4 -?3\]|\[-?19; -?81\]", page)
 
 
-@pytest.mark.parametrize("said", ["K is [4 3]", "with [4 3] it holds", "the gain [4 3] is asked for; and more"])
+@tabled
 def test_of_a_wording_that_nobody_knows_nothing_is_told(said: str) -> None:
     assert without_solution(said) == ""
 

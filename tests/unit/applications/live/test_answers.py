@@ -147,7 +147,7 @@ def test_responses_are_within_their_bound() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("dt", [{}, {"dt": "1"}])
+@tabled
 @pytest.mark.parametrize("task", ["observer", "reduced_order_observer"])
 def test_roots_in_the_data_have_responses(task: str, dt: dict[str, str]) -> None:
     plant = {"A": "[0 1; sqrt(2)/4 -1/2]", "C": "[1 sqrt(3)/2]", **dt}
@@ -209,7 +209,7 @@ def _decimal(entry: str) -> Any:
     return eval(entry, {"sqrt": mpmath.sqrt}) + mpmath.mpf(0)  # noqa: S307 - our own answer
 
 
-@pytest.mark.parametrize("poles", ["-1, -20, -20", "-1, -40, -40", "-1/10+10i, -1/10-10i, -1", "-1, -1, -1"])
+@tabled
 def test_peak_and_settling_are_those_of_the_whole_response(poles: str) -> None:
     chain = {"A": "[0 1 0; 0 0 1; 0 0 0]", "C": "[1 0 0]"}
     found = asked({"task": "observer", "plant": chain, "specification": {"poles": poles}}, courses={})

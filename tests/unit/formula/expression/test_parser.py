@@ -77,7 +77,7 @@ def test_matrices_are_read_as_they_are_printed(text: str, expected: str) -> None
     assert parse_matrix(text) == parse_matrix(expected)
 
 
-@pytest.mark.parametrize("poles", ["-1 ± 2i, −3", ["-1 ± 2i", "-3"]])
+@tabled
 def test_a_pair_of_poles_is_two(poles: object) -> None:
     assert [str(pole) for pole in parse_poles(poles)] == ["-1 + 2*I", "-1 - 2*I", "-3"]
 
@@ -222,7 +222,7 @@ def test_unknown_name_among_declared_ones(text: str, repair: str) -> None:
     assert repair in caught.value.repair
 
 
-@pytest.mark.parametrize("text", ["0 1; 0 -1", "1 0", "k; 2"])
+@tabled
 def test_a_matrix_without_its_brackets_is_told_so(text: str) -> None:
     with pytest.raises(ExpressionError, match="at column") as raised:
         parse_matrix(text, {"k": "real"}, where="plant.A")
@@ -603,7 +603,7 @@ def test_a_name_like_an_imaginary_number_is_one_only_where_it_is_declared() -> N
         parse_poles("-2+j2, ?", {})
 
 
-@pytest.mark.parametrize("name", ["j2", "i3", "jw0", "abs", "log"])
+@tabled
 def test_a_name_that_means_something_elsewhere_is_not_to_be_declared(name: str) -> None:
     for names in ({}, {"omega": "real"}):
         with pytest.raises(UnknownName) as caught:

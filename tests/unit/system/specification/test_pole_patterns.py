@@ -40,7 +40,7 @@ def test_a_butterworth_polynomial_is_that_of_scipy(order: int) -> None:
     assert polynomial(order, {"butterworth": "1.7"}) == pytest.approx(denominator.tolist(), rel=1e-9)
 
 
-@pytest.mark.parametrize("order", [1, 2, 3, 4, 7])
+@tabled
 def test_a_bessel_polynomial_is_that_of_scipy_for_a_delay(order: int) -> None:
     denominator = scipy.signal.bessel(order, 3, analog=True, norm="delay")[1]
     assert polynomial(order, "bessel = 3") == pytest.approx(denominator.tolist(), rel=1e-9)

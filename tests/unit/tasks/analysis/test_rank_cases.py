@@ -159,7 +159,7 @@ def test_what_is_missing_repairs_it(name: str) -> None:
 # -- nothing else is accepted -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["a circle", "an elliptic curve", "diag(a, b, c)", "C = [a c]"])
+@tabled
 def test_a_kernel_on_a_stratum_cannot_be_another_one(name: str) -> None:
     for case in result(name).case_tree:
         part: Any = case.result

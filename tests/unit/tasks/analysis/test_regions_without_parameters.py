@@ -91,7 +91,7 @@ def test_beside_a_parameter_called_t_in_capitals_the_horizon_is_not_called_t() -
         symobs.initial_state_covariance(plant, horizon="t", R="[1]")
 
 
-@pytest.mark.parametrize("data", [{}, {"Q": "[1]"}])
+@tabled
 def test_the_covariance_may_end_at_a_horizon_called_t(data: dict[str, str]) -> None:
     plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
     called, usual = (symobs.initial_state_covariance(plant, horizon=end, R="[1]", **data) for end in ("t", "T"))

@@ -108,7 +108,7 @@ def test_a_moved_boundary_is_told_where_nothing_is_open(dt: Any, limit: Any, sai
     assert said in text_of(found)
 
 
-@pytest.mark.parametrize("sign", ["positive", "negative", "nonzero"])
+@tabled
 @pytest.mark.parametrize("parameters", [["h"], ["h", "k"]])
 def test_the_sign_of_a_parameter_outside_of_the_polynomial_empties_nothing(sign: str, parameters: list[str]) -> None:
     signs = dict.fromkeys(parameters, "real") | {"h": sign}

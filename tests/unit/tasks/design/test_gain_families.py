@@ -157,7 +157,7 @@ def test_what_is_no_entry_is_refused(zero: Any) -> None:
     assert caught.value.repair
 
 
-@pytest.mark.parametrize("name", ["ackermann", "canonical_form", "coefficient_matching", "companion_form"])
+@tabled
 def test_methods_for_one_output_say_so(name: str) -> None:
     with pytest.raises(InputError, match="needs one output"):
         symobs.observer(TRIPLE, poles=[-1, -1, -1], method=name)

@@ -23,7 +23,7 @@ from symobs.tasks.result import (
     tasks,
     writers,
 )
-from tests.kit import SERVO
+from tests.kit import SERVO, tabled
 from tests.support.problems.steps import A, F, said
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ class Elsewhere(Squared):
         page.steps = [Define(said(Letter(self.letter), self.value))]
 
 
-@pytest.mark.parametrize("letter", ["A", "B", "C", "D"])
+@tabled
 def test_a_page_speaks_of_the_plant_s_own_data(letter: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Elsewhere, "letter", letter)
     number = {"number": Scalar.of(3), "square": Scalar.of(9)}
