@@ -97,7 +97,6 @@ def test_the_version_needs_neither_kernel_nor_tasks() -> None:
         "symobs.cli.command_line",
         "symobs.cli.shared",
         "symobs.cli.shared.common",
-        "symobs.cli.shared.options",
         "symobs.cli.shared.output",
     }
     assert own == {"symobs", "symobs.ground", "symobs.ground.errors"} | own_modules
