@@ -6,6 +6,7 @@ import random
 import re
 import unicodedata
 import xml.etree.ElementTree as ET
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -19,7 +20,7 @@ from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.tasks.result import render
-from tests.kit import tabled
+from tests.kit import tabled, tables
 from tests.pages.test_worked_examples import solved
 from tests.support.examples import EXAMPLES as FILES
 from tests.support.examples import document_of
@@ -31,7 +32,6 @@ from tests.unit.pages.test_printers import hostile_members
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
-    from pathlib import Path
 
     from symobs.pages.page.blocks import Block
     from symobs.tasks.result import Document
@@ -46,17 +46,7 @@ def some(start: int) -> pytest.MarkDecorator:
 
 # -- the same mathematics ---------------------------------------------------------------------------------------------
 
-_COMMANDS = {
-    "varphi": "φ",
-    "partial": "∂",
-    "ell": "l",
-    "varepsilon": "ε",
-    "lambda": "λ",
-    "Lambda": "Λ",
-    "le": "≤",
-    "ge": "≥",
-    "neq": "≠",
-}
+_COMMANDS = tables(Path(__file__))["commands"]
 _COMMANDS |= {"not": "≢", "equiv": "", "sim": "\N{TILDE OPERATOR}", "ast": "\N{ASTERISK OPERATOR}", "pm": "±"}
 _COMMANDS |= {"approx": "≈", "int": "∫", "sum": "∑", "cdot": "⋅", "times": "×", "ldots": "..."}
 _COMMANDS |= {

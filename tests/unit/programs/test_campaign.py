@@ -160,16 +160,7 @@ def test_a_problem_is_a_file_and_the_same_of_one_seed() -> None:
 
 # -- points ------------------------------------------------------------------------------------------------------------
 
-_ANSWER = {
-    "verdict": "conditional",
-    "conditions": ["m != 0", "a != b"],
-    "condition_kinds": ["domain", "existence"],
-    "rank": 2,
-    "cases": [
-        {"when": ["a == b", "a != 1"], "verdict": "no", "rank": 1},
-        {"when": ["a == 1", "b == 1"], "verdict": "no", "rank": 0},
-    ],
-}
+_ANSWER = tables(Path(__file__))["answer"]
 
 
 def test_the_case_that_holds_at_a_point_is_found() -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from math import lcm
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -18,7 +19,7 @@ from hypothesis import strategies as st
 from symobs.exact import Scalar, from_coefficients
 from symobs.formula.expression import parse_scalar
 from symobs.stability.criteria.stability_conditions import condition_lists, stable_where
-from tests.kit import tabled
+from tests.kit import tabled, tables
 from tests.support.algebra import (
     coefficients_at,
     has_sign,
@@ -60,14 +61,7 @@ def all_positive(values: Sequence[Scalar], point: Mapping[str, Fraction]) -> boo
 
 #: Coefficients, signs, and the conditions found by QEPCAD, z3 or by hand; each must be > 0.
 
-IN_DISCRETE_TIME = {
-    "second order": ("1, h1, h2", ["1 + h1 + h2", "1 - h1 + h2", "1 - h2"]),
-    "third order": ("1, h1, h2, 1/4", ["4*h1 + 4*h2 + 5", "3 - 4*h1 + 4*h2", "4*h1 - 16*h2 + 15"]),
-    "fourth order": (
-        "1, h1, 0, h2, 1/8",
-        ["9 - 8*h1 - 8*h2", "9 + 8*h1 + 8*h2", "441 - 64*h1^2 + 576*h1*h2 - 512*h2^2"],
-    ),
-}
+IN_DISCRETE_TIME = tables(Path(__file__))["in_discrete_time"]
 
 
 def holds_the_same(found: Simplified, expected: Sequence[Scalar], signs: Mapping[str, str]) -> None:

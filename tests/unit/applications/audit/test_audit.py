@@ -5,6 +5,7 @@ from __future__ import annotations
 import decimal
 import json
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -15,38 +16,15 @@ from symobs.applications.audit import audit, report
 from symobs.applications.audit.equations import read_relation
 from symobs.ground.errors import BudgetExceeded, CertificateRejected, ProblemErrors, SymobsError
 from symobs.problem import read
-from tests.kit import tabled
+from tests.kit import tabled, tables
 from tests.support.problems.printed import finding, findings, problem
 from tests.support.tools.command_line import inside
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from symobs.formula.expression.syntax import SyntaxNode
 
 # Of the servo 1/(s (s + 1)) with observer poles -10, -10, worked out by hand: L = [19; 81].
-RIGHT = [
-    "L = [19; 81]",
-    "A - L C = [-19 1; -81 -1]",
-    "[A B; C 0] = [0 1 0; 0 -1 1; 1 0 0]",
-    "V^-1 = [0 1; 1 -1]",
-    "ctrb(A', C') = [1 0; 0 1]",
-    "(s I - A + L C)^-1 = [s+1 1; -81 s+19]/(s + 10)^2",
-    "adj(s I - A + L C) = [s+1 1; -81 s+19]",
-    "x_hat' = [-19 1; -81 -1] x_hat + [0; 1] u + [19; 81] y",
-    "e' = [-19 1; -81 -1] e",
-    "x_hat_2' = -81 x_hat_1 - x_hat_2 + u + 81 y",
-    "eigenvalues(A - L C) = [-10, -10]",
-    "det(s I - A + L C) = s^2 + 20 s + 100",
-    "trace(A) + rank(O) = 1",
-    "P = 1/(s (s + 1))",
-    "L' = place(A', C', (s + 10)^2)",
-    "rref([1 2; 2 4]) = [1 2; 0 0]",
-    "[I 0; I -I] [x; x_hat] = [x; e]",
-    "y'' = -x_2 + u",
-    "A - A = 0",
-    "sqrt(4) exp(t) exp(-t) = 2 sin(t)^2 + 2 cos(t)^2",
-]
+RIGHT = tables(Path(__file__))["right"]
 
 
 @pytest.mark.parametrize("relation", RIGHT)
@@ -137,7 +115,7 @@ def test_both_neighbours_of_a_half_are_rounded() -> None:
 # -- whatever is printed -----------------------------------------------------------------------------------------------
 
 
-LETTERS = ["A", "B", "C", "L", "V", "O", "x", "e", "u", "y", "x_hat", "x_1", "I", "0", "1", "2.5", "s", "phi_o", "t"]
+LETTERS = tables(Path(__file__))["letters"]
 SHAPES = ["{}'", "-{}", "{}^-1", "{}^2", "det({})", "rank({})", "size({})", "({} + {})", "{} {}", "[{} {}]", "[{}; {}]"]
 SHAPES += ["{} - {}", "{}/{}", "ctrb({}, {})", "obsv({}, {})", "eigenvalues({})", "rref({})", "place({}, {}, {})"]
 

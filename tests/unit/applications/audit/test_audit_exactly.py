@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 from symobs.applications.audit import audit
 from symobs.ground.errors import ProblemErrors
 from symobs.problem import read
-from tests.kit import tabled
+from tests.kit import tabled, tables
 from tests.support.problems.printed import finding, findings, problem
 from tests.support.tools.command_line import inside
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 # O = [c 0; 0 c], so det O = c^2.
 CHAIN: dict[str, Any] = {"plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[c 0]"}, "symbols": {"c": "real"}}
@@ -114,11 +112,7 @@ def test_factors_with_decimals_are_compared_by_their_roots(
 
 # Ogata, Modern Control Engineering, 5th edition, section 10-6 (page 777): A = [0 1; 20.6 0], C = [1 0], K = [29.6 3.6],
 # L = [16; 84.6]; the controller is (778.2 s + 3690.7)/(s^2 + 19.6 s + 151.2).
-OGATA: dict[str, Any] = {
-    "plant": {"A": "[0 1; 20.6 0]", "B": "[0; 1]", "C": "[1 0]"},
-    "tasks": ["compensator"],
-    "specification": {"control_poles": "-1.8+2.4i, -1.8-2.4i", "observer_poles": [-8, -8]},
-}
+OGATA: dict[str, Any] = tables(Path(__file__))["ogata"]
 
 
 def test_ogata_s_controller_is_right_as_printed() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import sympy as sp
@@ -11,27 +12,14 @@ import sympy as sp
 from symobs.applications.export.grader import claims
 from symobs.applications.export.grader.claims import judge
 from symobs.applications.export.grader.values import ONE, number, points, poly
-from tests.kit import tabled
+from tests.kit import tabled, tables
 
 if TYPE_CHECKING:
     import pytest
 
 S = sp.Symbol("s")
-MARKS: dict[str, Any] = {
-    "credit": {
-        "entry": "1/2",
-        "other_half": "1/4",
-        "rounded": "1/3",
-        "sign": "1/2",
-        "sign_convention": "1/5",
-        "transposed": "2/3",
-    },
-    "follow_through": "3/4",
-    "guard": True,
-    "decimals": "exact",
-    "sign_of_F": "convention",
-}
-PLANT = {"A": [["0", "1"], ["0", "-1"]], "B": [["0"], ["1"]], "C": [["1", "0"]], "D": [["0"]]}
+MARKS: dict[str, Any] = tables(Path(__file__))["marks"]
+PLANT = tables(Path(__file__))["plant"]
 
 
 def gain(

@@ -31,16 +31,8 @@ from tests.support.live_link import problem_of
 from tests.support.sampling import every
 from tests.support.tools.command_line import EXAMPLES, SAFETY, environment
 
-SERVO: dict[str, Any] = {
-    "task": "compensator",
-    "plant": {"A": "[0 1; 0 -1]", "B": "[0; 1]", "C": "[1 0]"},
-    "specification": {"control_poles": "-2, -2", "observer_poles": "-10, -10"},
-}
-DETECTABLE: dict[str, Any] = {
-    "task": "observability",
-    "plant": {"A": "[0 1; -2 -3]", "C": "[1 c]"},
-    "symbols": {"c": "real"},
-}
+SERVO: dict[str, Any] = tables(Path(__file__))["servo"]
+DETECTABLE: dict[str, Any] = tables(Path(__file__))["detectable"]
 SMALL = [path for path in EXAMPLES if path.stem not in {"cart_pole", "region_three_gains"}]
 _TEXT = {"type": "string"}
 _CARD = {
@@ -49,11 +41,7 @@ _CARD = {
     "required": ["name", "mathml", "latex", "says"],
 }
 _ERROR = {"type": "object", "required": ["where", "message", "repair"], "additionalProperties": _TEXT}
-_LINE = {
-    "type": "object",
-    "required": ["signal", "component", "dashed", "heights"],
-    "properties": {"heights": {"type": "array", "items": {"type": "integer"}}},
-}
+_LINE = tables(Path(__file__))["line"]
 SCHEMA = Draft202012Validator(
     {
         "type": "object",

@@ -7,6 +7,7 @@ import json
 import re
 import shutil
 import subprocess
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -22,7 +23,7 @@ from symobs.ground.errors import CertificateRejected, ProblemErrors, UsageError
 from symobs.problem import read
 from symobs.problem.expect import mismatches
 from symobs.tasks.result import render
-from tests.kit import tabled
+from tests.kit import tabled, tables
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
@@ -260,13 +261,7 @@ def outcome(
     return run({"problem": problem, "constraints": constraints, "gains": {}})["result"]["reason"]
 
 
-PLANTS = {
-    "unobservable": {"A": "[1 0; 0 2]", "B": "[1; 1]", "C": "[1 0]"},
-    "oscillator": {"A": "[0 1; -1 0]", "B": "[0; 1]", "C": "[1 0]"},
-    "stable": {"A": "[0 1; -2 -3]", "B": "[0; 1]", "C": "[-1 1]"},
-    "double": {"A": "[0 1; -1 -2]", "B": "[0; 1]", "C": "[2 1]"},
-    "golden": {"A": "[0 1; 1 1]", "B": "[0; 1]", "C": "[1 0]"},
-}
+PLANTS = tables(Path(__file__))["plants"]
 TRUE = {
     "observable": {"oscillator", "stable", "golden", "double"},
     "controllable": set(PLANTS),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -16,12 +17,12 @@ from symobs.formula.expression.names import Scope
 from symobs.formula.expression.source import Source, Token
 from symobs.formula.expression.syntax import every, operands_first, parse
 from symobs.ground.errors import InputError
-from tests.kit import tabled
+from tests.kit import tabled, tables
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-PIECES = ["1", "2.5", "a", "b ", "sqrt(", "(", ")", "[", "]", ",", ";", "\n", " ", "+", "-", "*", "/", "^", "**"]
+PIECES = tables(Path(__file__))["pieces"]
 MOST = 10**6
 OPERATIONS: dict[type, Callable[[Fraction, Fraction], Fraction]] = {
     ast.Add: lambda a, b: a + b,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,7 +15,7 @@ from symobs.exact import Scalar, stable_roots
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.stability.criteria.stability import is_beyond, is_marginal, on_boundary
 from symobs.tasks.analysis.modes import modes
-from tests.kit import scalar, tabled
+from tests.kit import scalar, tabled, tables
 from tests.support.problems.strategies import Sample, plants
 
 numeric = plants(("dense", "hidden", "defective"))
@@ -205,7 +206,7 @@ def test_pages_of_plants_that_are_never_controllable_or_observable(A: str, rest:
 # -- which root is stable ---------------------------------------------------------------------------------------------
 
 #: Irreducible, lowest coefficient first, with roots on both sides of the axis or on it; the last two are self-reciprocal.
-MIXED = ((3606, -36, 106, -12, 1), (1, 0, 3, 0, 1), (1, 0, 0, 0, 1), (5, 1, 0, 1), (3, 1, -5, 1, 3), (3, 1, 5, 1, 3))
+MIXED = tables(Path(__file__))["mixed"]
 
 
 @pytest.mark.parametrize("coefficients", MIXED)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,19 +11,11 @@ from scipy.linalg import expm  # type: ignore[import-untyped]
 
 import symobs
 from symobs.ground.errors import InputError, ShapeMismatch
-from tests.kit import SERVO
+from tests.kit import SERVO, tables
 from tests.support.algebra import seeded
 from tests.support.sampling import seeds
 
-GENERATORS = (
-    [[0]],
-    [[1]],
-    [[0, 1], [-1, 0]],
-    [[0, 2], [-2, 0]],
-    [[0, 1], [0, 0]],
-    [[-1]],
-    [[0, 0, 0], [0, 0, 1], [0, -1, 0]],
-)
+GENERATORS = tables(Path(__file__))["generators"]
 
 
 def drawn(seed: int) -> tuple[dict[str, np.ndarray[Any, Any]], Any]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import symobs
-from tests.kit import tabled, text_of
+from tests.kit import tabled, tables, text_of
 
 SERVO = ("[0 1; 0 -1]", "[0; 1]", "[1 0]")
 
@@ -30,11 +31,7 @@ def test_observers_of_reduced_order(pole: str, words: str) -> None:
     assert words in found
 
 
-TASKS: list[tuple[str, dict[str, Any]]] = [
-    ("compensator", {}),
-    ("feedforward", {}),
-    ("tracking", {"reference_matrix": "[0 1; -1 0]", "observer": "full"}),
-]
+TASKS: list[tuple[str, dict[str, Any]]] = tables(Path(__file__))["tasks"]
 
 
 @pytest.mark.parametrize(("task", "further"), TASKS)
