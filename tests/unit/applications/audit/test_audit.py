@@ -115,7 +115,7 @@ def test_both_neighbours_of_a_half_are_rounded() -> None:
 # -- whatever is printed -----------------------------------------------------------------------------------------------
 
 
-LETTERS = tables(Path(__file__))["letters"]
+LETTERS: list[str] = tables(Path(__file__))["letters"]
 SHAPES = ["{}'", "-{}", "{}^-1", "{}^2", "det({})", "rank({})", "size({})", "({} + {})", "{} {}", "[{} {}]", "[{}; {}]"]
 SHAPES += ["{} - {}", "{}/{}", "ctrb({}, {})", "obsv({}, {})", "eigenvalues({})", "rref({})", "place({}, {}, {})"]
 
