@@ -35,7 +35,7 @@ def polynomial_of(value: Scalar, environment: Environment) -> Scalar:
 
 
 def _lowered(polynomial: Scalar, environment: Environment) -> Scalar:
-    """Return a polynomial without the coefficients that vanish where the relations hold.
+    """Return a polynomial with the coefficients that it has where the relations hold, without those that vanish there.
 
     Raises `TooLarge` where that is not known of the first, and so not the degree.
     """
@@ -44,7 +44,10 @@ def _lowered(polynomial: Scalar, environment: Environment) -> Scalar:
         return polynomial
     try:
         ideal = Ideal.where(environment.relations)
-        kept = [c if c.numerator not in ideal or c.denominator in ideal else Scalar.of(0) for c in coefficients]
+        vanishing = (c.numerator in ideal and c.denominator not in ideal for c in coefficients)
+        kept = [
+            Scalar.of(0) if is_zero else ideal.simplified(c) for c, is_zero in zip(coefficients, vanishing, strict=True)
+        ]
     except TooLarge:
         if not coefficients[0].is_constant:
             raise

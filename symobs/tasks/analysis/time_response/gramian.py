@@ -406,7 +406,7 @@ def _tell_lyapunov(result: Gramian, page: Builder) -> None:
     if result.plant.order > _LYAPUNOV_UP_TO or any(map(function_named, result.plant.field.names)):
         return
     A, C = _letters(result, page)
-    P = lyapunov(A.value, C.value.T @ C.value, discrete=False)
+    P = lyapunov(A.value, C.value.T @ C.value, result.plant)
     if P is None:
         return
     page.set("P_l", P)
@@ -568,7 +568,8 @@ def _tell_kernel(result: Gramian, page: Builder) -> None:
     if not kernel.shape[1]:
         key = "kernel_none_controllability" if result.answer["of"] == "controllability" else "kernel_none"
         is_somewhere = result.answer["horizon"] == INFINITE and bool(result.decay.positive)
-        key = "kernel_none_of_sum" if result.answer["matrix"] is None or is_somewhere else key
+        is_elsewhere = result.plant.is_discrete and not page.defines("W")  # it is told in cases
+        key = "kernel_none_of_sum" if result.answer["matrix"] is None or is_somewhere or is_elsewhere else key
         _tell_nonsingular(key, "M", result, page)
         return
     if result.answer["matrix"] is None or result.answer["of"] == "controllability":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from symobs.exact import Matrix, Scalar, remainder
+from symobs.exact import Matrix, Scalar, modulo, remainder
 from symobs.exact.core.generators import NotWritten, all_roots, derivative, function_named
 from symobs.exact.time_functions.quasipolynomial import Table, table_of
 from symobs.formula.expression import parse_scalar
@@ -85,7 +85,8 @@ def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str,
     variable, hidden = plant.variable, test["restricted"]
     seen = A.characteristic_polynomial(variable)
     if hidden.shape[0]:  # on a stratum the factor divides modulo its equations only
-        seen = plant.simplified(remainder(seen, hidden.characteristic_polynomial(variable), variable)[0])
+        seen = remainder(seen, hidden.characteristic_polynomial(variable), variable)[0]
+    seen = plant.simplified(seen)
     found = stability(seen, variable, plant.symbols.signs, discrete=plant.is_discrete)
     nothing: dict[str, Any] = {"matrix": None, "determinant": None, "seen": seen}
     if found.verdict == "no":
@@ -93,19 +94,20 @@ def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str,
     order = A.shape[0]
     if order > (MOST_WITH_PARAMETERS if (A.names | C.names) else MOST_STATES):
         return {**nothing, "question": f"Lyapunov's equation for {order} states"}
-    W = _of_what_is_seen(A, C, test, discrete=plant.is_discrete)
+    W = _of_what_is_seen(A, C, test, plant)
     if W is None:
         return {**nothing, "question": "Lyapunov's equation has no unique solution"}
+    W = modulo(W, plant.ideal)
     return {"matrix": W, "determinant": W.determinant(), "seen": seen}
 
 
-def _of_what_is_seen(A: Matrix, C: Matrix, test: Mapping[str, Any], *, discrete: bool) -> Matrix | None:
+def _of_what_is_seen(A: Matrix, C: Matrix, test: Mapping[str, Any], plant: StateSpace) -> Matrix | None:
     """Solve Lyapunov's equation for the part that is seen: with x₁ = Q x, Q rows of 𝒪, A₁ Q = Q A and W = QᵀW₁Q."""
     order = range(A.shape[0])
     if not test["rank"]:
         return Matrix.zeros(*A.shape)
     if test["rank"] == A.shape[0]:
-        return lyapunov(A, C.T @ C, discrete=discrete)
+        return lyapunov(A, C.T @ C, plant)
     Q: Matrix = test["matrix"].select(test["rows"], order)
     square = Q.select(range(Q.shape[0]), test["columns"]).T
 
@@ -113,14 +115,17 @@ def _of_what_is_seen(A: Matrix, C: Matrix, test: Mapping[str, Any], *, discrete:
         return square.solve(rows.select(range(rows.shape[0]), test["columns"]).T).T.normal()
 
     seen = through(C)
-    W = lyapunov(through(Q @ A), seen.T @ seen, discrete=discrete)
+    W = lyapunov(through(Q @ A), seen.T @ seen, plant)
     return None if W is None else (Q.T @ W @ Q).normal()
 
 
-def lyapunov(A: Matrix, Q: Matrix, *, discrete: bool) -> Matrix | None:
-    """Return the symmetric P with AᵀP + PA = −Q (AᵀPA − P = −Q), None where it is not unique."""
+def lyapunov(A: Matrix, Q: Matrix, plant: StateSpace) -> Matrix | None:
+    """Return the symmetric P with AᵀP + PA = −Q (AᵀPA − P = −Q in discrete time), None where it is not unique."""
+    operator = lyapunov_operator(A, discrete=plant.is_discrete)
+    if plant.ideal is not None and operator.determinant().numerator in plant.ideal:
+        return None
     try:
-        found = lyapunov_operator(A, discrete=discrete).solve(-upper_entries(Q)).normal()
+        found = operator.solve(-upper_entries(Q)).normal()
     except ZeroDivisionError:
         return None
     return symmetric(found)

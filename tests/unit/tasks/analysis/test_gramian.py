@@ -70,3 +70,17 @@ def test_cases_that_hold_at_one_point_agree_there() -> None:
         return bool(relation.func(value, 0))
 
     assert set(ranks(found)) == {1}
+
+
+@pytest.mark.parametrize(
+    ("A", "C", "verdict"),
+    [
+        ("[cos(th) sin(th); -sin(th) cos(th)]", "[1 0]", "no"),  # a rotation: nothing decays
+        ("[cos(th)/2 sin(th)/2; -sin(th)/2 cos(th)/2]", "[1 0]", "conditional"),
+        ("[1/2 0; a 1/3]", "[1 1]", "yes"),  # W is told in cases, the finite sum for all of them
+    ],
+)
+def test_infinite_sums_with_parameters_have_their_page(A: str, C: str, verdict: str) -> None:
+    result = symobs.gramian(symobs.StateSpace(A, C=C, dt=True), horizon="inf")
+    assert result.verdict == verdict
+    assert result.to("text")
