@@ -98,7 +98,8 @@ def stratum_of(node: Node, region: Region) -> RankStratum:
 def parametrised(node: Node, region: Region) -> dict[str, Scalar] | None:
     """Return the values of some parameters in the others wherever a node holds, or None where no equation is linear.
 
-    The leading coefficient of a parameter must not vanish there; one that never vanishes is preferred.
+    The leading coefficient of a parameter must not vanish there; one that never vanishes is preferred.  None, too, where a
+    function would have no argument: exp(a) for a = b/(1 - exp(b)) at b = 0.
     """
     values: dict[str, Scalar] = {}
     left = list(node.locus.equations)
@@ -107,8 +108,11 @@ def parametrised(node: Node, region: Region) -> dict[str, Scalar] | None:
         if found is None:
             return None
         name, value = found
-        values = {known: entry.substitute({name: value}) for known, entry in values.items()} | {name: value}
-        images = [equation.substitute({name: value}).numerator for equation in left]
+        try:
+            values = {known: entry.substitute({name: value}) for known, entry in values.items()} | {name: value}
+            images = [equation.substitute({name: value}).numerator for equation in left]
+        except ZeroDivisionError:
+            return None
         left = [math.prod(region.vanishing(image), start=Scalar.of(1)) for image in images if not image.is_zero]
     return values
 

@@ -44,6 +44,11 @@ def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
         # several inputs, and no family is known
         ("state_feedback", ("[0 0; cos(b) a]", "[exp(-a) 1; 0 -b]"), {"poles": "-1, -2"}),
         # a case in a case, where the matrices of the outer one have equal values but divide by cos b
+        (
+            "feedforward",
+            ("[0 1; -b -b]", "[1-exp(b); a]", "[1 exp(-a)]"),
+            {"control_poles": "-1, -2", "observer_poles": "-1, -2"},
+        ),
         ("decomposition", ("[0 0; a 0]", "[exp(-a) 0; cos(b) 0]", "[0 -1]"), {}),
     ],
 )
