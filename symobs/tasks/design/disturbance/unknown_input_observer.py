@@ -423,6 +423,8 @@ def _decoupled(page: Builder, design: UnknownInputObserver, E: Term) -> None:
     conditions = [c.expression for c in design.holds_where if c.kind != "domain"]
     if H.is_zero:
         page.define("H_d", page.value(H), say="uio_nothing", closing=False, answer=True)
+        if conditions:
+            page.assume("uio_provided", *conditions)
     else:
         seen = C @ E
         page.equal(relation(seen, seen.as_value), say="uio_seen")

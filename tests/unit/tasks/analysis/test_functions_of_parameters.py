@@ -43,6 +43,8 @@ def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
         ("zero_order_hold", ("[-2 a; -1 sqrt(3)-1]", "[sqrt(2); -2]"), {}),
         # several inputs, and no family is known
         ("state_feedback", ("[0 0; cos(b) a]", "[exp(-a) 1; 0 -b]"), {"poles": "-1, -2"}),
+        # no unknown input, and a pair that is observable for a ≠ 0
+        ("unknown_input_observer", ("[1 a; 0 2]", None, "[1 0]"), {"E": "[0; 0]", "poles": "-1, -2"}),
         # a case in a case, where the matrices of the outer one have equal values but divide by cos b
         (
             "feedforward",
