@@ -222,9 +222,9 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
     if not substitution and isinstance(when, Relation) and when.operators == ("=",):
         left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
         inside = replace(environment, relations=(*environment.relations, left - right), nonzero=())
-        return (
-            inside if not Ideal.where(inside.relations).is_whole else reject(plain_relation(when, environment.variable))
-        )
+        if Ideal.where(inside.relations).is_whole:
+            reject(plain_relation(when, environment.variable))
+        return _with_meaning(inside)
     named, lost = dict(substitution), set[str]()
     for name, value in environment.coefficients.items():
         try:
@@ -251,13 +251,23 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
         relations=(*relations, *vanishing),
     )
     if isinstance(when, Conjunction):
-        return inside.with_relations(_left_of(when, substitution, environment))
+        return _with_meaning(inside.with_relations(_left_of(when, substitution, environment)))
     left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
     factors = [f for f, _ in (left - right).numerator.factors()[1] if not never_zero(f, environment.signs)]
     says_no_more = [f.degree(name) for f in factors for name in substitution] == [1] and when.operators == ("=",)
     if not says_no_more or verify(when, inside)[0] == "":
         reject(plain_relation(when, environment.variable))
     return inside
+
+
+def _with_meaning(inside: Environment) -> Environment:
+    """Return an environment without the letters whose values divide by 0 where its relations hold."""
+    below = {name: value.common_denominator() for name, value in inside.values.items()}
+    if all(value.is_constant for value in below.values()):
+        return inside
+    ideal = Ideal.where(inside.relations)
+    kept = {n: v for n, v in inside.values.items() if below[n].is_constant or below[n].numerator not in ideal}
+    return replace(inside, values=kept)
 
 
 def _in_common_base(

@@ -135,13 +135,13 @@ def environment_on(
 
 
 def set_anew(outer: Environment, inner: Environment, before: Environment | None = None) -> tuple[str, ...]:
-    """Return the letters, other than the data's, that a case introduces again, though it be with an equal value.
+    """Return the letters, other than the data's, that a case redefines.
 
     A letter of the page `before` the case may be undefined there with named gains, and defined with their values.
     """
     known = {**(before.values if before is not None else {}), **outer.values}
     both = (name for name in known if name in inner.values and name not in "ABCD")
-    return tuple(name for name in both if inner.values[name] is not outer.values.get(name))
+    return tuple(name for name in both if inner.values[name] != outer.values.get(name))
 
 
 #: A polynomial of more terms is not written out among words.
