@@ -51,8 +51,10 @@ class Term:
         value = self.value
         return value[0, 0] if isinstance(value, Matrix) else value
 
-    def _with(self, formula: Formula) -> Term:
-        return Term(formula, self.environment)
+    def _with(self, formula: Formula, other: object = None) -> Term:
+        """Return a term of this one, or of two: an environment of a page grows, and the later one knows both."""
+        is_later = isinstance(other, Term) and len(other.environment.values) > len(self.environment.values)
+        return Term(formula, other.environment if is_later else self.environment)  # type: ignore[attr-defined]
 
     def _read(self, other: Term | Scalar | Matrix | int) -> Formula:
         if isinstance(other, Term):
@@ -60,22 +62,22 @@ class Term:
         return Literal(Scalar.of(other) if isinstance(other, int) else other)
 
     def __add__(self, other: Term | Scalar | Matrix | int) -> Term:
-        return self._with(Sum((*_terms(self.formula), *_terms(self._read(other)))))
+        return self._with(Sum((*_terms(self.formula), *_terms(self._read(other)))), other)
 
     def __sub__(self, other: Term | Scalar | Matrix | int) -> Term:
-        return self._with(Sum((*_terms(self.formula), Negative(self._read(other)))))
+        return self._with(Sum((*_terms(self.formula), Negative(self._read(other)))), other)
 
     def __neg__(self) -> Term:
         return self._with(Negative(self.formula))
 
     def __matmul__(self, other: Term) -> Term:
-        return self._with(Product((*_factors(self.formula), *_factors(other.formula))))
+        return self._with(Product((*_factors(self.formula), *_factors(other.formula))), other)
 
     def __mul__(self, other: Term | Scalar | int) -> Term:
-        return self._with(Product((*_factors(self.formula), *_factors(self._read(other)))))
+        return self._with(Product((*_factors(self.formula), *_factors(self._read(other)))), other)
 
     def __truediv__(self, other: Term | Scalar | int) -> Term:
-        return self._with(Quotient(self.formula, self._read(other)))
+        return self._with(Quotient(self.formula, self._read(other)), other)
 
     def __pow__(self, exponent: int) -> Term:
         return self._with(self.formula if exponent == 1 else Power(self.formula, exponent))
