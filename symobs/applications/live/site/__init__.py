@@ -25,7 +25,7 @@ _HERE = Path(__file__).parent
 _PACKAGE = _HERE.parents[2]
 #: Folders which an installed package holds itself; in a checkout they lie beside it.
 _DATA = ("worked_examples", "latex_templates")
-_KINDS = {".py", ".css", ".toml", ".tex"}
+_KINDS = {".py", ".css", ".json", ".toml", ".tex"}
 _RUNTIME = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
 #: What answers need: not the command line, nor what runs many problems or checks what others wrote.
 _NEEDLESS = {"cli", "batch", "checking", "export", "variants", "audit", "site", "__pycache__"}
