@@ -83,7 +83,7 @@ def solved(shown: list[WorkedExample], folder: Path) -> dict[str, str]:
     """Return the derivations by name; those whose example and code did not change are kept in a folder."""
     code = hashlib.sha256()
     for path in sorted((ROOT / "symobs").rglob("*")):
-        if path.suffix in {".py", ".css", ".toml"}:
+        if path.suffix in {".py", ".css", ".json", ".toml"}:
             code.update(path.read_bytes())
     folder.mkdir(exist_ok=True)
     kept: dict[str, str] = {}
