@@ -248,7 +248,7 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
         nonzero=(),
         domain=domain,
         positive=positive,
-        relations=(*relations, *vanishing),
+        relations=tuple(dict.fromkeys((*relations, *vanishing))),
     )
     if isinstance(when, Conjunction):
         return _with_meaning(inside.with_relations(_left_of(when, substitution, environment)))

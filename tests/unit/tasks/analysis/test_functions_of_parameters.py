@@ -72,3 +72,8 @@ def test_an_equation_that_factors_beside_another_leaves_its_case_undecided() -> 
     plant = S("[0 0; exp(x) c*sin(y)]", "[exp(-x)-c -1; 0 exp(-x)]", "[c-cos(y) 0]", dt=True)
     found = symobs.output_regulation(plant, S="[1]", reference="[2]", poles="-1/2-3*I, -1/2+3*I")
     assert found.to_json()
+
+    def undecided(result: Any) -> int:
+        return sum(1 if case.result is None else undecided(case.result) for case in result.cases)
+
+    assert undecided(found) == 1
