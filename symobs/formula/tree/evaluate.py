@@ -59,6 +59,7 @@ class Meanings:
     relations   polynomials that are 0 here: the equations of a stratum, the minimal polynomial of an eigenvalue
     positive    polynomials in the parameters that a stated inequality keeps above 0
     shown       what a page displayed, or spoke of, last: what "it" and "the polynomial" in the next sentence mean
+    age         how often it was extended: of two environments of a page the older one knows what both know
     """
 
     variable: str = "s"
@@ -73,6 +74,7 @@ class Meanings:
     relations: tuple[Scalar, ...] = ()
     positive: tuple[Scalar, ...] = ()
     shown: tuple[Any, ...] = field(default=(), compare=False)
+    age: int = field(default=0, compare=False)
 
     def defines(self, name: str) -> bool:
         """Return whether a letter is defined."""
@@ -85,7 +87,7 @@ class Meanings:
     def extended_by(self, **updates: Mapping[str, Any]) -> Self:
         """Return an environment with entries added to the named mappings."""
         changed: dict[str, Any] = {key: {**getattr(self, key), **new} for key, new in updates.items()}
-        return replace(self, **changed)
+        return replace(self, age=self.age + 1, **changed)
 
     def with_relations(self, relations: tuple[Scalar, ...]) -> Self:
         """Return an environment in which further polynomials are 0."""

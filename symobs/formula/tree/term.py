@@ -52,9 +52,8 @@ class Term:
         return value[0, 0] if isinstance(value, Matrix) else value
 
     def _with(self, formula: Formula, other: object = None) -> Term:
-        """Return a term of this one, or of two: an environment of a page grows, and the later one knows both."""
-        is_later = isinstance(other, Term) and len(other.environment.values) > len(self.environment.values)
-        return Term(formula, other.environment if is_later else self.environment)  # type: ignore[attr-defined]
+        """Return a term of this one, or of two."""
+        return Term(formula, _environment_of(self, other) if isinstance(other, Term) else self.environment)
 
     def _read(self, other: Term | Scalar | Matrix | int) -> Formula:
         if isinstance(other, Term):
@@ -131,6 +130,11 @@ class Environment(Meanings):
         return Term(Letter(name), self)
 
 
+def _environment_of(*terms: Term) -> Environment:
+    """Return the environment that knows what all terms know: that of a page grows."""
+    return max((term.environment for term in terms), key=lambda environment: environment.age)
+
+
 def _terms(formula: Formula) -> tuple[Formula, ...]:
     return formula.terms if isinstance(formula, Sum) else (formula,)
 
@@ -143,12 +147,13 @@ def product(terms: list[Term]) -> Term:
     """Return the product of at least one term."""
     if len(terms) == 1:
         return terms[0]
-    return Term(Product(tuple(term.formula for term in terms)), terms[0].environment)
+    return Term(Product(tuple(term.formula for term in terms)), _environment_of(*terms))
 
 
 def block(rows: list[list[Term]]) -> Term:
     """Return the matrix or stacked signal of blocks."""
-    return Term(Block(tuple(tuple(term.formula for term in row) for row in rows)), rows[0][0].environment)
+    formula = Block(tuple(tuple(term.formula for term in row) for row in rows))
+    return Term(formula, _environment_of(*(term for row in rows for term in row)))
 
 
 def identity(order: int, environment: Environment) -> Term:
