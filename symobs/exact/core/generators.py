@@ -411,7 +411,7 @@ def identities(
         meaning = _in_base(f, steps, below[f])
         if meaning != f.value:
             meanings[f.name] = meaning
-    return meanings, tuple(r.numerator for r in relations)
+    return meanings, tuple(r.substitute(meanings).numerator for r in relations)
 
 
 def identities_at(
