@@ -398,9 +398,12 @@ def _annuls(said: Said, *names: str) -> bool:
     return _vanishes(here, Product((row, others[0]))) and all(_differs(here, each) for each in (row, *left))
 
 
-def _ranks(C: str, E: str, operator: str) -> tuple[Formula, str, Formula]:
-    """Return that the rank of C E is that of E, or is lower."""
-    return Apply("rank", Product((_letter(C), _letter(E)))), operator, Apply("rank", _letter(E))
+def _is_lower_rank(said: Said, C: str, E: str) -> bool:
+    """Return whether C E w = 0 and E w ≠ 0 are told: the kernel of C E is then larger than that of E."""
+    unseen, differs = (relation.members[0] for relation in said.of(Relation))
+    along = differs.factors if isinstance(differs, Product) else (differs,)
+    names_them = unseen == Product((_letter(C), *along)) and along[0] == _letter(E)
+    return names_them and _vanishes(said.environment, unseen) and _differs(said.environment, differs)
 
 
 def _are_duals(said: Said, *pairs: str) -> bool:
@@ -936,8 +939,10 @@ _OF_STEP: dict[str, Callable[..., bool]] = {
     "on_boundary": _is_on_boundary,
     "vanishes": _vanishes_of,
     "annuls": _annuls,
-    "one_rank": lambda said, C, E: _holds(said.environment, *_ranks(C, E, "=")),
-    "lower_rank": lambda said, C, E: _holds(said.environment, *_ranks(C, E, "<")),
+    "one_rank": lambda said, C, E: _holds(
+        said.environment, Apply("rank", Product((_letter(C), _letter(E)))), "=", Apply("rank", _letter(E))
+    ),
+    "lower_rank": _is_lower_rank,
     "nonsingular": _is_nonsingular,
     "duals": _are_duals,
     "sums_powers": lambda said: _sums(said, "M"),
