@@ -266,7 +266,8 @@ class _PageBlocks:
     def rows(self, case: CaseStep, around: tuple[Relation, ...] = ()) -> Iterator[Row]:
         """Yield the conditions, the fixed modes and the answer of a case, or of those within it."""
         own = case.when.relations if isinstance(case.when, Conjunction) else (case.when,)
-        where = (*(relation for relation in around if not _follows(relation, own)), *own)
+        around = (*(relation for relation in around if not _follows(relation, own)), *own)
+        where = around
         modes: Inlines = ("–",)
         answer: list[Inline] = []
         for step in case.steps:
@@ -285,12 +286,13 @@ class _PageBlocks:
             yield where, modes, joined(answer[1:])
         for step in case.steps:
             if isinstance(step, CaseStep):
-                yield from self.rows(step, where)
+                yield from self.rows(step, around)
 
     def table(self, rows: Sequence[Row]) -> Columns:
         """Return the table of cases; those with the same modes and answer share a row."""
         places: dict[tuple[Inlines, Inlines], list[Inline]] = {}
-        for where, modes, answer in rows:
+        alike = {(frozenset(where), modes, answer): where for where, modes, answer in reversed(rows)}
+        for (_, modes, answer), where in reversed(alike.items()):
             place = places.setdefault((modes, answer), [])
             place += ["; "] if place else []
             for index, relation in enumerate(dict.fromkeys(where)):

@@ -244,7 +244,7 @@ def _about_letters(formula: Formula, environment: Environment) -> None:
 
 
 def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
-    """Verify a relation or a property; a property must hold whatever the named coefficients stand for."""
+    """Verify a relation or a property; a property without conditions must hold whatever named coefficients stand for."""
     if isinstance(fact, Relation):
         for member in fact.members:
             _established(member, environment)
@@ -261,7 +261,8 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
     if isinstance(fact, Evaluated):
         _fact(Relation((fact.formula, fact.value), ("=",)), environment, discrete)
         return
-    environment = replace(environment, coefficients={})
+    if not isinstance(fact, HoldsExactlyWhere):
+        environment = replace(environment, coefficients={})
     if isinstance(fact, Roots):
         _about_letters(fact.polynomial, environment)
         value = as_scalar(evaluate(fact.polynomial, environment, Exact(environment)))

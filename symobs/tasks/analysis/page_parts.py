@@ -33,7 +33,7 @@ from symobs.formula.tree.term import block
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import CaseStep, Note, Step
 from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
-from symobs.proof.derivation.facts import on_stratum
+from symobs.proof.derivation.facts import on_stratum, polynomial_of
 from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.simplify import as_inequality
 from symobs.system.conditions import Condition, sign_of, solved, vanishing_factors
@@ -120,7 +120,7 @@ def case_steps(page: Builder, result: Result, write: Callable[[Builder, Any], No
         inner.environment = here.extended_by(values=matrices)
         write(inner, found)
         inner.steps += case_steps(inner, found, write)
-        anew = set_anew(here, inner.environment, page.environment)
+        anew = set_anew(here, inner.environment)
         yield CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
 
 
@@ -134,14 +134,9 @@ def environment_on(
         return None
 
 
-def set_anew(outer: Environment, inner: Environment, before: Environment | None = None) -> tuple[str, ...]:
-    """Return the letters, other than the data's, that a case redefines.
-
-    A letter of the page `before` the case may be undefined there with named gains, and defined with their values.
-    """
-    known = {**(before.values if before is not None else {}), **outer.values}
-    both = (name for name in known if name in inner.values and name not in "ABCD")
-    return tuple(name for name in both if inner.values[name] != outer.values.get(name))
+def set_anew(outer: Environment, inner: Environment) -> tuple[str, ...]:
+    """Return the letters, other than the data's, that a case gives a value that they have not outside."""
+    return tuple(name for name, value in inner.values.items() if name not in "ABCD" and value != outer.values.get(name))
 
 
 #: A polynomial of more terms is not written out among words.
@@ -383,7 +378,8 @@ def hidden_polynomial(page: Builder, order: int, name: str = "X") -> Term:
 
 def say_stability(page: Builder, about: Term) -> None:
     """Say whether the polynomial that a term means is stable, or exactly where."""
-    plant, polynomial = page.plant, about.scalar
+    plant = page.plant
+    polynomial = polynomial_of(about.scalar.substitute(page.environment.coefficients), page.environment)
     found = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
     time = "discrete" if plant.is_discrete else "continuous"
     if found.verdict == "yes":

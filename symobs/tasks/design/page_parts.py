@@ -539,7 +539,7 @@ def define_gain(
         closing = [] if meanings else [last.as_value]
         page.equal(relation(page[gain].T, *before, *closing), relation(page[gain], shown), say=say, answer=answer)
     else:
-        page.define(gain, *before, *([shown] if meanings else []), say=say, answer=answer)
+        page.define(gain, *(before if before and not meanings else [*before, shown]), say=say, answer=answer)
     if meanings:
         page.equal(*meanings, say="with_coefficients")
     return page[gain]

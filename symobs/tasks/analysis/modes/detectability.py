@@ -398,7 +398,7 @@ def _where(page: Builder, result: HiddenStability, about: Term) -> None:
         page.conclude("marginal_if", where=HoldsExactlyWhere(predicate("marginal", about), where))
         page.conclude(f"exactly_there_{result.task}")
         return
-    say_stability(page, about)  # of the polynomial as the page has it, which equations may make a shorter one
+    say_stability(page, about)
     page.conclude(f"exactly_there_{result.task}" if result.meaning == "asymptotic" else "boundary_undecided")
 
 

@@ -22,7 +22,7 @@ PHRASES: dict[str, str] = {
     "long_observability": "Its determinant has {count} terms and is not displayed. The pair ($C$, $A$) is observable if and only if it is nonzero.",
     "long_controllability": "Its determinant has {count} terms and is not displayed. The pair ($A$, $B$) is controllable if and only if it is nonzero.",
     "undecided_long": "The case in which a factor of {count} terms vanishes is not decided here.",
-    "undecided_many": "The case in which {when} and {count} further polynomials vanish simultaneously is not decided here.",
+    "undecided_many": "The case in which {when} and further polynomials ({count}) vanish simultaneously is not decided here.",
     "undecided_rank": "The case in which the rank is below its generic value is not decided here: the minors are too long to display.",
     "undecided_case": "The case in which {when} vanishes is not decided here.",
     "undecided_together": "The case in which {when} and {other} vanish simultaneously is not decided here.",

@@ -583,7 +583,7 @@ def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[
             write_case(page, inner, side, (*around, case))
     finally:
         steps, page.steps, page.environment = page.steps, outer, environment
-    anew = set_anew(here, inside, environment)
+    anew = set_anew(here, inside)
     page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=anew))
 
 

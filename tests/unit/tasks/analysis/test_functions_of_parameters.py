@@ -52,6 +52,11 @@ def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
             {"control_poles": "-1, -2", "observer_poles": "-1, -2"},
         ),
         ("decomposition", ("[0 0; a 0]", "[exp(-a) 0; cos(b) 0]", "[0 -1]"), {}),
+        (
+            "gramian",
+            ("[0 1; 1+exp(b) b]", "[1; 0]"),
+            {"of": "controllability", "horizon": "1"},
+        ),  # a root of e^b, and e^{b/2}
     ],
 )
 def test_pages_beside_letters_and_roots(task: str, data: tuple[str | None, ...], asked: dict[str, str]) -> None:

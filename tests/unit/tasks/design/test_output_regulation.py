@@ -11,7 +11,7 @@ from scipy.linalg import expm  # type: ignore[import-untyped]
 
 import symobs
 from symobs.ground.errors import InputError, ShapeMismatch
-from tests.kit import SERVO, tables
+from tests.kit import SERVO, tables, text_of
 from tests.support.algebra import seeded
 from tests.support.sampling import seeds
 
@@ -112,3 +112,10 @@ def test_what_does_not_fit_is_refused() -> None:
         symobs.output_regulation(plant, S="[0]", reference="[1]", E="[1 0; 0 1]", poles="-1, -2")
     with pytest.raises(ShapeMismatch, match="S is 1×2, and must be square"):
         symobs.output_regulation(plant, S="[0 1]", reference="[1]", poles="-1, -2")
+
+
+def test_a_case_keeps_a_gain_of_several_outputs_as_it_was() -> None:
+    plant = symobs.StateSpace("[b b^2; a+1 -1]", "[b; a]", "[b -1; 0 b]", dt=True, symbols={"a": "real", "b": "real"})
+    asked = {"S": "[0 1; -1 0]", "reference": "[0 0; 0 0]", "E": "[0 0; 0 a]", "poles": "0, 1/2"}
+    found: Any = symobs.output_regulation(plant, **asked, observer_poles="0, 1/2, -1/2, 1/3")
+    assert "The gain is not unique" in text_of(found)

@@ -116,3 +116,29 @@ def test_many_special_cases_are_the_rows_of_one_table() -> None:
     ):
         assert row in table
     assert "Case" not in page
+
+
+LETTERS = dict.fromkeys(("a", "b", "p"), "real")
+
+
+@pytest.mark.parametrize(
+    ("plant", "E", "poles"),
+    [
+        (symobs.StateSpace("[0 1; (-exp(a)^2-1)/(2*exp(a)) 0]", C="[1 0]", symbols=LETTERS), "[0; 0]", "-p, -2*p"),
+        (symobs.StateSpace("[0]", C="[cos(b)]", symbols=LETTERS), "[a]", "-1"),  # two equations say where cos b = 0
+        (symobs.StateSpace("[b^2 -a; -1 -a]", C="[b^2 a-b; 0 a+1]", symbols=LETTERS), "[1; a]", "-1, -2"),
+    ],
+)
+def test_a_page_has_all_cases(plant: symobs.StateSpace, E: str, poles: str) -> None:
+    """Beside a gain in letters, on strata of several equations, and where an outer case has lost F."""
+    assert "not decided here" not in text_of(symobs.unknown_input_observer(plant, E=E, poles=poles))
+
+
+def test_a_row_inside_a_case_does_not_repeat_what_the_case_assumes() -> None:
+    plant = symobs.StateSpace("[0]", C="[b]", symbols=LETTERS)
+    page = text_of(symobs.unknown_input_observer(plant, E="[a]", poles="-1"))
+    table = page[page.index("Special cases") : page.index("References")]
+    for row in ("a = 0, b ≠ 0 │ –", "a = 0, b = 0 │ 0", "b = 0 │ – │ none, since"):
+        assert row in table
+    assert "b ≠ 0, b = 0" not in table
+    assert table.count("a = 0") == 2
