@@ -162,7 +162,15 @@ def square_root(radicand: Scalar) -> Scalar:
         below = unit.denominator.fraction() if unit.denominator.is_constant else Fraction(1)
         part = square_part(abs(common) * int(below))
         front, unit = front * Fraction(part, int(below)), unit * Fraction(int(below) ** 2, part**2)
+    else:
+        outside = square_divisor(number)
+        front, unit = front * outside, unit / outside**2
     return front * generator("sqrt", odd * unit)
+
+
+def square_divisor(number: Fraction) -> Fraction:
+    """Return the largest fraction whose square divides the numerator and the denominator of a number other than 0."""
+    return Fraction(square_part(abs(number.numerator)), square_part(number.denominator))
 
 
 def square_part(number: int) -> int:

@@ -231,6 +231,10 @@ class Builder:
     def in_time(self, *values: Scalar | Matrix, at: Scalar | None = None) -> None:
         """Admit functions of time, and what they are at an instant, with their algebraic dependences from the start."""
         self.in_time_by(*identities_at(values, at))
+        self.name_roots(*values)
+
+    def name_roots(self, *values: Scalar | Matrix) -> None:
+        """Write square roots of sums as letters."""
         taken = {*self.plant.symbols.signs, *self.plant.field.names}
         letters = iter([form for form in _ROOTS if form.lstrip("\\") not in taken])
         for root in _roots_of_sums(values):

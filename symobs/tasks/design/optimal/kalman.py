@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Relation
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
+    from symobs.system.conditions import Condition
     from symobs.system.specification import Intensity, MatrixText, Name
 
 
@@ -67,9 +68,9 @@ page_of(OptimalFilter)(write_optimal)
 
 
 @method("kalman/riccati", source="kalman1961; kucera1972")
-def by_riccati(plant: StateSpace, weights: Mapping[str, Matrix]) -> OptimalFilter:
+def by_riccati(plant: StateSpace, weights: Mapping[str, Matrix], needed: tuple[Condition, ...] = ()) -> OptimalFilter:
     """Solve Riccati's equation of the dual regulator for P; then L = PCᵀV⁻¹."""
-    return OptimalFilter.of(plant, weights, "riccati")
+    return OptimalFilter.of(plant, weights, "riccati", needed)
 
 
 @task
@@ -92,6 +93,7 @@ def kalman(
     else None; `decimals` with certain digits of L and P where the data are numbers; verdict `no` with the `modes` that the
     output does not show, or that lie on the boundary and are not driven by the noise;
     undecided, with the `question`, where with parameters no square roots write P.
+    A sign that a parameter alone in the diagonal of W or V needs is a condition.
     Raises `InputError` for intensities of other signs, `ShapeMismatch`; `Undecided` for too many states.
     Source: R. E. Kalman and R. S. Bucy (1961); V. Kučera (1972).
     """

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Relation
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
+    from symobs.system.conditions import Condition
     from symobs.system.specification import Intensity, MatrixText, Name
 
 
@@ -61,9 +62,9 @@ page_of(OptimalFeedback)(write_optimal)
 
 
 @method("lqr/riccati", source="kalman1960b; kucera1972")
-def by_riccati(plant: StateSpace, weights: Mapping[str, Matrix]) -> OptimalFeedback:
+def by_riccati(plant: StateSpace, weights: Mapping[str, Matrix], needed: tuple[Condition, ...] = ()) -> OptimalFeedback:
     """Solve Riccati's equation for P by the stable factor of the polynomial of H; then K = R⁻¹(BᵀP + Nᵀ)."""
-    return OptimalFeedback.of(plant, weights, "riccati")
+    return OptimalFeedback.of(plant, weights, "riccati", needed)
 
 
 @task
@@ -85,6 +86,7 @@ def lqr(
     A − BK: exact where square roots write them, else None; `decimals` with certain digits of K and P where the data are
     numbers; verdict `no` with the `modes` that no input moves, or that lie on the boundary and are hidden from the cost;
     undecided, with the `question`, where with parameters no square roots write P.
+    A sign that a parameter alone in the diagonal of Q or R needs is a condition.
     Raises `InputError` for weights of other signs, `ShapeMismatch`; `Undecided` for too many states.
     Source: R. E. Kalman (1960); V. Kučera (1972); S. S. L. Chang (1961), A. M. Letov (1960).
     """

@@ -7,6 +7,7 @@ polynomial the stable factor of that of the Hamiltonian matrix H; where square r
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
@@ -34,8 +35,8 @@ from symobs.ground.errors import CertificateRejected, InputError, Undecided
 from symobs.proof.certificate.claims import Claim, Statement
 from symobs.proof.certificate.pointwise import never_together_zero
 from symobs.proof.derivation.facts import leading_minors
-from symobs.stability.criteria.stability import monic, on_boundary, stability
-from symobs.system.conditions import joined, nonzero, real_consequences, sign_of, vanishing_factors
+from symobs.stability.criteria.stability import essential, monic, on_boundary, stability
+from symobs.system.conditions import Condition, joined, nonzero, real_consequences, sign_of, vanishing_factors
 from symobs.system.specification import over_common_data, read_symmetric
 from symobs.tasks.analysis.modes.modes import polynomial_of
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
@@ -50,7 +51,6 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Relation
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
-    from symobs.system.conditions import Condition
     from symobs.tasks.analysis.strata.strata import Place
 
 #: With more states the proof of the digits takes seconds; with parameters no square roots write the factor in general.
@@ -75,6 +75,8 @@ class OptimalGain(Result):
     """P and the gain with their equations, and a stable loop; or why there is none."""
 
     weights: Mapping[str, Matrix]
+    #: The signs that parameters need for the weights to have theirs, beyond the declared ones.
+    needed: tuple[Condition, ...] = ()
 
     letter: ClassVar[str]
     panels = ("plane",)
@@ -102,7 +104,9 @@ class OptimalGain(Result):
     # -- construction ------------------------------------------------------------------------------------------------
 
     @classmethod
-    def of(cls, plant: StateSpace, weights: Mapping[str, Matrix], method_name: str) -> Self:
+    def of(
+        cls, plant: StateSpace, weights: Mapping[str, Matrix], method_name: str, needed: tuple[Condition, ...] = ()
+    ) -> Self:
         """Return the optimal gain, exact and in certain digits, or the obstacle, or the question that is open."""
         regulator = cls.regulator_of(plant, weights)
         names = (cls.letter, "P", "polynomial", "factors", "digits", "obstacle", "question")
@@ -111,7 +115,7 @@ class OptimalGain(Result):
         try:
             answer["obstacle"] = _obstacle(regulator, plant)
             if answer["obstacle"] is not None:
-                return cls(plant, method_name, answer, weights)
+                return cls(plant, method_name, answer, weights, needed)
             found = _exact_solution(regulator, plant)
             gain, polynomial = cls.turned(found.gain), found.polynomial
             answer |= {cls.letter: gain, "P": found.P, "polynomial": polynomial, "factors": found.factors}
@@ -122,7 +126,7 @@ class OptimalGain(Result):
             reason = "no precision that is tried proves the digits"
         if answer["P"] is None and answer["digits"] is None:
             answer["question"] = reason
-        return cls(plant, method_name, answer, weights)
+        return cls(plant, method_name, answer, weights, needed)
 
     @cached_property
     def regulator(self) -> Regulator:
@@ -246,12 +250,13 @@ class OptimalGain(Result):
         if self.answer["P"] is None or _is_numeric(self.regulator):
             return ()
         regulator, plant = self.regulator, self.plant
-        _, *_, c_2, _, c_0 = (Scalar.of(0), *self.even.coefficients(plant.variable))
-        chi = regulator.uncrossed[0].characteristic_polynomial(plant.variable).coefficients(plant.variable)
-        found, signs = [c_0.numerator, *([c_0.denominator] if plant.is_discrete else [])], plant.symbols.signs
-        if plant.order == 2:  # p₁² is the sum of a² and the others, but for what is positive where b < 0
-            a, b = chi[1:]
-            found.append(a**2 + (2 * b - a**2 - c_2) + c_0 - b**2)
+        A, _, Q = regulator.uncrossed
+        c_0, signs = self.even.coefficients(plant.variable)[-1], plant.symbols.signs
+        found = [c_0.numerator, *([c_0.denominator] if plant.is_discrete else [])]
+        if plant.order == 2 and sign_of(Q[0, 0] + Q[1, 1], signs) != "positive":  # where Q = 0 a pair ± iω is hidden
+            _, a, b = A.characteristic_polynomial(plant.variable).coefficients(plant.variable)
+            is_pair = plant.is_discrete or sign_of(b, signs) not in {"negative", "nonpositive", "zero"}
+            found += [(b - 1 if plant.is_discrete else a) ** 2 + Q[0, 0] + Q[1, 1]] if is_pair else []
         beside: list[Scalar] = []
         if regulator.B.shape[1] == 1:
             determinant = Matrix.block([[regulator.B, regulator.A @ regulator.B][: plant.order]]).determinant()
@@ -264,6 +269,11 @@ class OptimalGain(Result):
     def further_data(self) -> tuple[Matrix, ...]:
         """The weights."""
         return tuple(self.weights.values())
+
+    @cached_property
+    def domain(self) -> tuple[Condition, ...]:
+        """That of the plant, and the signs that the weights need."""
+        return (*super().domain, *self.needed)
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
@@ -370,8 +380,37 @@ def design_optimal(
     read = [read_symmetric(value, plant, name, size) for name, (value, size) in given.items()]
     plant, found = over_common_data(plant, *read, further[1])
     weights = dict(zip((*given, further[0]), found, strict=True))
+    symbols, signs = plant.symbols, _needed_signs(weights, plant.symbols.signs)
+    plant = plant.with_symbols(replace(symbols, signs={**symbols.signs, **signs})) if signs else plant
     _require_signs(kind.regulator_of(plant, weights), weights, plant.symbols.signs)
-    return choose(kind.task, method, "riccati").solve(plant, weights).asked(method)
+    needed = (Condition("domain", Scalar.symbol(name), _RELATIONS[sign]) for name, sign in signs.items())
+    return choose(kind.task, method, "riccati").solve(plant, weights, (*needed,)).asked(method)
+
+
+#: What a weight asks of a parameter that stands alone in its diagonal, by what is declared of it.
+_OF_STATE, _OF_INPUT = (
+    {"real": "nonnegative", "nonzero": "positive"},
+    dict.fromkeys(("real", "nonzero", "nonnegative"), "positive"),
+)
+_RELATIONS = {"nonnegative": ">=", "positive": ">"}
+
+
+def _needed_signs(weights: Mapping[str, Matrix], signs: Mapping[str, str]) -> dict[str, str]:
+    """Return the signs that parameters need which stand alone in the diagonal of a weight: of [q 0; 0 p], q and p."""
+    found: dict[str, str] = {}
+    for matrix, by_sign in zip(weights.values(), (_OF_STATE, _OF_INPUT), strict=False):
+        for k in range(matrix.shape[0]):
+            entry = essential(matrix[k, k], signs)
+            sign = by_sign.get(sign_of(entry, {**signs, **found}))
+            if sign and entry.names and entry == Scalar.symbol(min(entry.names)):
+                found[min(entry.names)] = sign
+    return found
+
+
+_DECIDED = {
+    "positive definite": "declare signs of the symbols that decide it, or put numbers in",
+    "positive semidefinite": "declare signs of the symbols that decide it, write HᵀH of some H, or put numbers in",
+}
 
 
 def _require_signs(regulator: Regulator, weights: Mapping[str, Matrix], signs: Mapping[str, str]) -> None:
@@ -397,7 +436,7 @@ def _require_signs(regulator: Regulator, weights: Mapping[str, Matrix], signs: M
             size = matrix.shape[0]
             raise InputError(message, where=where, repair=f"give a symmetric {wanted} {size}×{size} matrix")
         message = f"{name} is not known to be {wanted}: the sign of {open_value} is open"
-        raise InputError(message, where=where, repair="declare signs of the symbols that decide it, or put numbers in")
+        raise InputError(message, where=where, repair=_DECIDED[wanted])
     if not regulator.N.is_zero and not is_semidefinite(regulator.uncrossed[2], signs):
         message = "Q - N R^-1 N^T is not known to be positive semidefinite"
         raise InputError(message, where="specification.N", repair="give a smaller N, or declare signs that decide it")
@@ -475,10 +514,8 @@ class Solution(NamedTuple):
 def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     """Return P from p(H) [I; P] = 0; raises `NoFactor`."""
     n, variable, signs = plant.order, plant.variable, plant.symbols.signs
-    with_parameters = 1 if regulator.discrete else MOST_WITH_PARAMETERS
-    if n > (_EXACT_UP_TO if _is_numeric(regulator) else with_parameters):
-        time = "discrete" if regulator.discrete else "continuous"
-        raise NoFactor(f"with parameters a closed form is looked for in {time} time up to order {with_parameters}")
+    if n > (_EXACT_UP_TO if _is_numeric(regulator) else MOST_WITH_PARAMETERS):
+        raise NoFactor(f"with parameters a closed form is looked for up to order {MOST_WITH_PARAMETERS}")
     H = hamiltonian(regulator)
     in_parameters = regulator.discrete and not _is_numeric(regulator)
     factors = stable_factors(H.characteristic_polynomial(variable), variable, signs, whole=in_parameters)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
-from symobs.exact.core.generators import all_roots
+from symobs.exact.core.generators import all_roots, function_named
 from symobs.exact.floating.riccati_check import excess, is_proved
 from symobs.exact.linear_algebra.krylov import Krylov
 from symobs.formula.tree import Decimals
@@ -21,7 +21,7 @@ from symobs.tasks.analysis.page_parts import case_steps, given
 from symobs.tasks.design.optimal.spectral_factor import with_signs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from symobs.formula.tree.term import Term
     from symobs.proof.derivation.builder import Builder
@@ -39,6 +39,9 @@ _LETTERS = {"Q": "Q_x", "R": "R_u", "N": "N_x", "P": "P_x", "W": "W_n", "V": "V_
 def write_optimal(page: Builder, result: OptimalGain) -> None:
     """Write the whole page."""
     _admit_roots(page, result)
+    values = [value for value in _values(result) if value.names]
+    inner_first = sorted(all_roots(*values), key=lambda root: (root.argument.size, root.name))
+    page.name_roots(*(root.argument for root in inner_first), *values)
     given(page)
     with page.section("optimal_feedback" if result.letter == "K" else "optimal_filter"):
         _tell_weights(page, result)
@@ -54,12 +57,23 @@ def _case(page: Builder, result: OptimalGain) -> None:
 
 def _admit_roots(page: Builder, result: OptimalGain) -> None:
     """Let the square roots of the answer have their relations and their sign from the start."""
-    values = [*result.values().values(), *(result.answer["factors"] or ())]
+    values = [value for each in _with_cases(result) for value in _values(each)]
     page.with_roots(*values)
     signs, open_ones = with_signs(page.start.signs, *values), _open_radicands(page, values)
     page.start, page.environment = (
         replace(each, signs=signs, positive=(*each.positive, *open_ones)) for each in (page.start, page.environment)
     )
+
+
+def _with_cases(result: OptimalGain) -> Iterator[OptimalGain]:
+    yield result
+    for case in result.case_tree:
+        if case.result is not None:
+            yield from _with_cases(case.result)  # type: ignore[arg-type]  # of the same task
+
+
+def _values(result: OptimalGain) -> list[Scalar | Matrix]:
+    return [*result.values().values(), *(result.answer["factors"] or ())]
 
 
 def _open_radicands(page: Builder, values: Iterable[Scalar | Matrix]) -> list[Scalar]:
@@ -142,6 +156,10 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
     else:
         _tell_pencil(page, A, B, Q, R)
     page.define("p_s", page.value(answer["polynomial"]), say="optimal_factor", closing=False)
+    for index, name in enumerate(page.forms):
+        root, radicand = (page.value(each) for each in (Scalar.symbol(name), function_named(name).argument))
+        say = "optimal_next_root" if index else "optimal_root"
+        page.conclude(say, root=relation(root**2, radicand), positive=relation(root, ">", 0))
     _tell_locus(page, Q, R)
     if _open_radicands(page, [answer["P"], *answer["factors"]]):
         page.remark("optimal_roots_real")

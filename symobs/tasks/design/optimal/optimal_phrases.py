@@ -21,6 +21,8 @@ PHRASES: dict[str, str] = {
     "optimal_hamiltonian": "The stable eigenvalues of the Hamiltonian matrix are the optimal poles§:",
     "optimal_even_of_pencil": "The optimal polynomial, times its mirror image, is up to a factor§",
     "optimal_factor": "Its factor with all roots in the stable region is",
+    "optimal_root": "where {root} and {positive}.",
+    "optimal_next_root": "Further {root} and {positive}.",
     "optimal_weighted": "With the weight multiplied by a factor the product above is",
     "optimal_locus": "The symmetric root locus while the weight grows from 0 to the given one.",
     "optimal_roots_real": "The square roots are real and positive: on the boundary the polynomial above is not negative, and where the conditions hold it has no root there.",
@@ -55,6 +57,8 @@ QUESTIONS: dict[str, str] = {
     "ask kalman": "Find the gain of the steady-state Kalman filter for input noise of intensity $W_n$ and output noise of intensity $V_n$. What is the covariance of the error?",
     "ask kalman G": "Find the gain of the steady-state Kalman filter for noise of intensity $W_n$ that enters through $G_n$, and output noise of intensity $V_n$. What is the covariance of the error?",
 }
+
+CONTINUES = ("optimal_root",)
 
 ASSERTS: dict[str, tuple[str, ...]] = {
     "optimal_rounded_feedback": ("stable",),

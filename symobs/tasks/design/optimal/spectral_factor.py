@@ -6,6 +6,7 @@ even of degree two or come in pairs f(s), ± f(−s).  Roots are positive by mea
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.exact import Field, Scalar, derivative, from_coefficients, product_of, resultant
@@ -14,6 +15,7 @@ from symobs.exact.core.generators import (
     generator,
     normal_form,
     roots_in,
+    square_divisor,
     square_root,
 )
 from symobs.stability.criteria.stability import monic, stability
@@ -126,11 +128,13 @@ def _root(radicand: Scalar, signs: Mapping[str, str]) -> Scalar:
     known = with_signs(signs, radicand)
     if sign_of(radicand, known) == "negative":
         raise NoFactor(f"{radicand} has no real root")
-    if _WHOLE in signs:
-        return generator("sqrt", radicand)
     root = square_root(radicand)
     known = with_signs(signs, root)
     sign = sign_of(root, known)
+    if _WHOLE in signs and not (sign in {"positive", "zero"} and root.size == 2):
+        unit, _ = radicand.factors()
+        outside = square_divisor(unit.fraction()) if unit.is_constant else Fraction(1)
+        return generator("sqrt", radicand / outside**2) * outside
     if sign in {"negative", "nonpositive"}:
         return -root
     return root if sign in {"positive", "nonnegative", "zero"} else generator("sqrt", radicand)

@@ -154,31 +154,47 @@ def test_textbook_problems(problem: dict[str, Any]) -> None:
 SIGNS = {"a": "real", "b": "nonzero", "q": "positive", "r": "positive"}
 
 
-def against_numbers(count: int) -> None:
-    """Hold K and P of order two with four parameters to SciPy at random points, and to the conditions."""
-    plant = symobs.StateSpace("[0 1; a 0]", "[0; b]", symbols=SIGNS)
+def against_numbers(count: int, dt: int) -> None:
+    """Hold K and P of order two with four parameters to SciPy at random points, also where a case is asked."""
+    plant = symobs.StateSpace("[0 1; a 0]", "[0; b]", dt=dt, symbols=SIGNS)
     result: Any = symobs.lqr(plant, Q="[q 0; 0 0]", R="r")
-    assert (result.verdict, result.conditions) == ("yes", ())
+    assert (result.verdict, [str(each) for each in result.conditions]) == (
+        ("conditional", ["Ne(a, 0)"]) if dt else ("yes", [])
+    )
     draw = seeded(11)
-    for _ in range(count):
-        a, b = draw.randint(-20, 20) / 4, draw.choice([-1, 1]) * draw.randint(1, 20) / 4
+    for index in range(count):
+        a, b = draw.randint(-20, 20) / 4 if index else 0, draw.choice([-1, 1]) * draw.randint(1, 20) / 4
         q, r = draw.randint(1, 30) / 8, draw.randint(1, 30) / 8
         values = {sympy.Symbol(name): sympy.Rational(value) for name, value in zip("abqr", (a, b, q, r), strict=True)}
-        P = np.array(result.P.subs(values).evalf().tolist(), dtype=complex)
-        K = np.array(result.K.subs(values).evalf().tolist(), dtype=complex)
+        there = result if a or not dt else result.cases[0].result
+        P = np.array(there.P.subs(values).evalf().tolist(), dtype=complex)
+        K = np.array(there.K.subs(values).evalf().tolist(), dtype=complex)
         A, B, R = np.array([[0, 1], [a, 0]]), np.array([[0], [b]]), np.array([[r]])
-        expected = solve_continuous_are(A, B, np.diag([q, 0.0]), R)
+        expected = (solve_discrete_are if dt else solve_continuous_are)(A, B, np.diag([q, 0.0]), R)
+        inner, coupled = (R + B.T @ expected @ B, B.T @ expected @ A) if dt else (R, B.T @ expected)
         assert np.allclose(P, expected, rtol=1e-7, atol=1e-9), (a, b, q, r)
-        assert np.allclose(K, np.linalg.solve(R, B.T @ expected), rtol=1e-7, atol=1e-9)
+        assert np.allclose(K, np.linalg.solve(inner, coupled), rtol=1e-7, atol=1e-9)
 
 
-def test_four_parameters_agree_with_numbers() -> None:
-    against_numbers(12)
+@pytest.mark.parametrize("dt", [0, 1])
+@pytest.mark.parametrize("count", [12, pytest.param(200, marks=pytest.mark.slow)])
+def test_four_parameters_agree_with_numbers(count: int, dt: int) -> None:
+    against_numbers(count, dt)
 
 
-@pytest.mark.slow
-def test_four_parameters_agree_with_numbers_at_many_points() -> None:
-    against_numbers(200)
+def test_a_sampled_double_integrator_with_three_parameters() -> None:
+    signs = dict.fromkeys("Tqr", "positive")
+    plant = symobs.StateSpace("[1 T; 0 1]", "[T^2/2; T]", dt=1, symbols=signs)
+    result: Any = symobs.lqr(plant, Q="[q 0; 0 0]", R="r")
+    assert (result.verdict, result.conditions) == ("yes", ())
+    T, q, r = map(sympy.Symbol, "Tqr")
+    for t, w, v in ((1, 1, 1), (2, 3, 5), (sympy.Rational(1, 3), 7, 2)):
+        P = np.array(result.P.subs({T: t, q: w, r: v}).evalf().tolist(), dtype=float)
+        A, B = np.array([[1, float(t)], [0, 1]]), np.array([[float(t) ** 2 / 2], [float(t)]])
+        assert np.allclose(P, solve_discrete_are(A, B, np.diag([float(w), 0]), np.array([[float(v)]])), rtol=1e-9)
+    text = result.to("text")
+    assert "ν² = r(q T² + 8√(q r)) and ν > 0" in " ".join(text.split())
+    assert "ν > 0" in result.to("text", language="de")
 
 
 def test_conditions_and_what_is_true_where_they_fail() -> None:
@@ -194,6 +210,22 @@ def test_conditions_and_what_is_true_where_they_fail() -> None:
         if at.verdict == "yes":
             w = abs(b) * sympy.sqrt(sympy.Rational(q, r))
             assert (at.K - sympy.Matrix([[w / b, sympy.sqrt(2 * w) / b]])).applyfunc(sympy.simplify).is_zero_matrix
+
+
+def test_signs_that_weights_need_are_conditions() -> None:
+    result: Any = symobs.lqr(symobs.StateSpace("[0 1; 0 0]", "[0; 1]"), Q="[q1 0; 0 q2]", R="r")
+    assert [str(each) for each in result.conditions] == ["q1 >= 0", "q2 >= 0", "r > 0", "Ne(q1, 0)"]
+    assert [case.result.verdict for case in result.cases] == ["no"]
+    # p(s) = s^2 + sqrt(q2/r + 2 sqrt(q1/r)) s + sqrt(q1/r)
+    K = result.evaluate({"q1": np.array([1.0, -1.0, 16.0]), "q2": np.array([2.0, 1.0, 1.0]), "r": 1.0})["K"]
+    assert np.allclose(K[[0, 2]], [[[1, 2]], [[4, 3]]])
+    assert np.isnan(K[1]).all()
+    with pytest.raises(InputError, match="-1 is not nonnegative"):
+        result.at(q1=-1, q2=1, r=1)
+    filtered: Any = symobs.kalman(
+        symobs.StateSpace("[a]", None, "[1]", symbols={"a": "nonzero", "w": "real", "v": "nonzero"}), W="4*w", V="v"
+    )
+    assert [str(each) for each in filtered.conditions] == ["w >= 0", "v > 0"]
 
 
 def test_an_obstacle_is_named() -> None:
@@ -302,7 +334,7 @@ def test_a_condition_that_never_fails_is_not_told_and_sums_fail_together() -> No
     assert (both.verdict, both.conditions, both.cases) == ("yes", (), ())
     signs = {"k": "positive", "m": "positive", "c": "nonnegative", "q": "nonnegative", "r": "positive"}
     damped: Any = symobs.lqr(symobs.StateSpace("[0 1; -k/m -c/m]", "[0; 1/m]", symbols=signs), Q="[0 0; 0 q]", R="r")
-    assert [str(condition) for condition in damped.conditions] == ["Ne(c**2*r + q, 0)"]
+    assert [str(condition) for condition in damped.conditions] == ["Ne(c**2 + m**2*q, 0)"]
     (case,) = damped.cases
     assert ({str(each) for each in case.when}, case.result.verdict) == ({"Eq(c, 0)", "Eq(q, 0)"}, "no")
     damped.to("text")
