@@ -111,14 +111,15 @@ def _is_short_surd(root: Root) -> bool:
 
 
 def _is_rounded(part: Any) -> bool:
-    """Return whether anything in a step is rounded."""
+    """Return whether anything that is printed of a step is rounded."""
     if isinstance(part, tuple):
         return any(map(_is_rounded, part))
     if isinstance(part, Relation):
         return "≈" in part.operators
     if isinstance(part, RoundedRoots):
         return any(is_rounded for *_, is_rounded in part.texts)
-    return is_dataclass(part) and any(_is_rounded(getattr(part, each.name)) for each in fields(part))
+    is_printed = is_dataclass(part) and not getattr(part, "silent", False)
+    return is_printed and any(_is_rounded(getattr(part, each.name)) for each in fields(part))
 
 
 def _without_decimals(steps: Iterable[Step]) -> Iterator[Step]:

@@ -121,7 +121,7 @@ class OptimalGain(Result):
             answer |= {cls.letter: gain, "P": found.P, "polynomial": polynomial, "factors": found.factors}
         except NoFactor as error:
             reason = str(error)
-        if _is_numeric(regulator):
+        if is_numeric(regulator):
             answer["digits"] = enclosed_solution(regulator)
             reason = "no precision that is tried proves the digits"
         if answer["P"] is None and answer["digits"] is None:
@@ -195,7 +195,7 @@ class OptimalGain(Result):
         yield Statement("the factors are monic", lambda: _shown(are_monic))
         moved = [to_disc(factor, v) for factor in factors] if plant.is_discrete else factors
         yield equality(of("p"), product_of(moved), e, "the polynomial is the product of the factors")
-        if not _is_numeric(self.regulator):
+        if not is_numeric(self.regulator):
             even, s = self.even, Scalar.symbol(plant.variable)
             p = product_of(self.answer["factors"])
             whole = p * p.substitute({plant.variable: -s})
@@ -247,7 +247,7 @@ class OptimalGain(Result):
     @property
     def existence(self) -> tuple[Scalar, ...]:
         """What vanishes where controllability is lost, or where the polynomial of H may have a root on the axis."""
-        if self.answer["P"] is None or _is_numeric(self.regulator):
+        if self.answer["P"] is None or is_numeric(self.regulator):
             return ()
         regulator, plant = self.regulator, self.plant
         A, _, Q = regulator.uncrossed
@@ -339,7 +339,8 @@ def _shown(holds: bool) -> str:  # noqa: FBT001 - the outcome of a check
     return "exact" if holds else ""
 
 
-def _is_numeric(regulator: Regulator) -> bool:
+def is_numeric(regulator: Regulator) -> bool:
+    """Return whether all data are numbers."""
     parts = (regulator.A, regulator.B, regulator.Q, regulator.R, regulator.N)
     return all(is_number(entry) for part in parts for entry in part.entries)
 
@@ -514,10 +515,10 @@ class Solution(NamedTuple):
 def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     """Return P from p(H) [I; P] = 0; raises `NoFactor`."""
     n, variable, signs = plant.order, plant.variable, plant.symbols.signs
-    if n > (_EXACT_UP_TO if _is_numeric(regulator) else MOST_WITH_PARAMETERS):
+    if n > (_EXACT_UP_TO if is_numeric(regulator) else MOST_WITH_PARAMETERS):
         raise NoFactor(f"with parameters a closed form is looked for up to order {MOST_WITH_PARAMETERS}")
     H = hamiltonian(regulator)
-    in_parameters = regulator.discrete and not _is_numeric(regulator)
+    in_parameters = regulator.discrete and not is_numeric(regulator)
     factors = stable_factors(H.characteristic_polynomial(variable), variable, signs, whole=in_parameters)
     if sum(factor.degree(variable) for factor in factors) != n:
         raise NoFactor("the polynomial has roots on the boundary")
@@ -537,7 +538,7 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     polynomial = from_coefficients([reduced(c) for c in loop.coefficients(variable)], variable)
     if in_parameters:  # 1 − π = 2σ/(1 + σ) is seen to be positive, and it would not with the root in the numerator
         polynomial = to_disc(product_of(factors), variable, reduce=False)
-    if max(entry.size for entry in (*P.entries, *gain.entries)) > _MOST_TERMS and _is_numeric(regulator):
+    if max(entry.size for entry in (*P.entries, *gain.entries)) > _MOST_TERMS and is_numeric(regulator):
         raise NoFactor("its closed form is too long")
     return Solution(P, gain, polynomial, factors)
 

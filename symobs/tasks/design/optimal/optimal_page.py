@@ -10,7 +10,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import all_roots, function_named
 from symobs.exact.floating.riccati_check import excess, is_proved
 from symobs.exact.linear_algebra.krylov import Krylov
-from symobs.formula.tree import Decimals
+from symobs.formula.tree import Decimals, Power
 from symobs.formula.tree.term import block
 from symobs.proof.certificate.claims import as_scalar
 from symobs.proof.derivation.builder import predicate, relation
@@ -18,6 +18,7 @@ from symobs.stability.criteria.stability import stability
 from symobs.stability.plots import root_locus
 from symobs.system.conditions import sign_of
 from symobs.tasks.analysis.page_parts import case_steps, given
+from symobs.tasks.design.optimal.optimal_gain import is_numeric
 from symobs.tasks.design.optimal.spectral_factor import with_signs
 
 if TYPE_CHECKING:
@@ -39,9 +40,9 @@ _LETTERS = {"Q": "Q_x", "R": "R_u", "N": "N_x", "P": "P_x", "W": "W_n", "V": "V_
 def write_optimal(page: Builder, result: OptimalGain) -> None:
     """Write the whole page."""
     _admit_roots(page, result)
-    values = [value for value in _values(result) if value.names]
-    inner_first = sorted(all_roots(*values), key=lambda root: (root.argument.size, root.name))
-    page.name_roots(*(root.argument for root in inner_first), *values)
+    if not is_numeric(result.regulator):
+        inner_first = sorted(all_roots(*_values(result)), key=lambda root: (root.argument.size, root.name))
+        page.name_roots(*(root.value for root in inner_first))
     given(page)
     with page.section("optimal_feedback" if result.letter == "K" else "optimal_filter"):
         _tell_weights(page, result)
@@ -151,9 +152,7 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
     if held:
         page.assume("optimal_provided", *held)
     A, B, Q, R = _problem(page, result)
-    if result.regulator.B.shape[1] == 1 and not plant.is_discrete:
-        _tell_root_square(page, A, B, Q, R, "_dual" if letter == "L" else "")
-    else:
+    if not _tell_root_square(page, result):
         _tell_pencil(page, A, B, Q, R)
     page.define("p_s", page.value(answer["polynomial"]), say="optimal_factor", closing=False)
     for index, name in enumerate(page.forms):
@@ -190,8 +189,12 @@ def _pencil(page: Builder, result: OptimalGain, gain: Term) -> Term:
     return page.s @ page.identity(page.plant.order) - page["A"] + moved
 
 
-def _tell_root_square(page: Builder, A: Term, B: Term, Q: Term, R: Term, side: str) -> None:
-    """Write p(s) p(−s) = χ(s) χ(−s) + R⁻¹ v(−s)ᵀ Q v(s) with v(s) = adj(sI − A) B."""
+def _tell_root_square(page: Builder, result: OptimalGain) -> bool:
+    """Write p(s) p(−s) = χ(s) χ(−s) + R⁻¹ v(−s)ᵀ Q v(s) with v(s) = adj(sI − A) B, of one input in continuous time."""
+    if result.regulator.B.shape[1] > 1 or page.plant.is_discrete:
+        return False
+    A, B, Q, R = _problem(page, result)
+    side = "_dual" if result.letter == "L" else ""
     one = page.identity(page.plant.order)
     forward, backward = page.s @ one - A, -(page.s @ one) - A
     page.define("chi_p", forward.apply("det"), say=f"optimal_open_loop{side}")
@@ -200,6 +203,7 @@ def _tell_root_square(page: Builder, A: Term, B: Term, Q: Term, R: Term, side: s
     page.define("v_m", backward.apply("adj") @ B)
     cost = R.inverse @ page["v_m"].T @ Q @ page["v_s"]
     page.define("c_even", page["chi_p"] @ page["chi_m"] + cost, say="optimal_even")
+    return True
 
 
 def _tell_locus(page: Builder, Q: Term, R: Term) -> None:
@@ -254,6 +258,8 @@ def _tell_matching(page: Builder, result: OptimalGain) -> None:
 def _tell_digits(page: Builder, result: OptimalGain) -> None:
     """Write P and the gain in decimals: in so many that a box of the size of their last place is mapped into itself."""
     letter, digits = result.letter, result.decimals
+    if page.plant.order <= _DRAWN_UP_TO and _tell_root_square(page, result):
+        _tell_locus(page, *_problem(page, result)[2:])
     tables = {f"{name}_r": [[Fraction(entry) for entry in row] for row in digits[name]] for name in ("P", letter)}
     largest = max(abs(entry) for table in tables.values() for row in table for entry in row)
     fewest = max(_DIGITS - len(str(int(largest))), 1)
@@ -274,7 +280,8 @@ def _tell_digits(page: Builder, result: OptimalGain) -> None:
     P, gain = near["P_r"], result.turned(near[f"{letter}_r"])
     bound = excess(result.regulator, P, gain, unit) if found.verdict == "yes" else None
     if bound is not None:
-        told = {"radius": radius, "bound": page.term(Decimals(Scalar.of(bound)))}
+        power = page.term(Power(Decimals(Scalar.of(10)), 1 - len(str(1 / bound))))
+        told = {"radius": radius, "bound": power if bound < unit else page.term(Decimals(Scalar.of(bound)))}
         page.conclude(f"optimal_rounded_{kind}", predicate("stable", chi), **told)
 
 
