@@ -638,10 +638,9 @@ def _told_number(said: Said, slot: str) -> Fraction:
 
 
 def _exceeds(said: Said, *names: str) -> bool:
-    """Return whether the cost of K, or −K, rounded as told, is at most as far above the least one as told."""
-    unit = _told_number(said, "radius")
-    bounds = [excess(problem, P, gain, unit) for problem, P, gain in _rounded_optima(said, unit, names)]
-    return any(bound is not None and bound <= _told_number(said, "bound") for bound in bounds)
+    """Return whether the bound told is the smallest power of ten found for the cost of K, or −K, rounded as told."""
+    unit, told = _told_number(said, "radius"), _told_number(said, "bound")
+    return any(excess(problem, P, gain, unit) == told for problem, P, gain in _rounded_optima(said, unit, names))
 
 
 def _splits(said: Said, even: str, of: str) -> bool:
