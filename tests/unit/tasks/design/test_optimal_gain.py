@@ -120,7 +120,7 @@ def test_digits_are_those_of_scipy_and_of_ninety_digits(seed: int) -> None:
 def solved(problem: dict[str, Any]) -> Any:
     plant = symobs.StateSpace(problem["A"], problem.get("B"), problem.get("C"), dt=problem.get("dt", 0))
     if problem.get("task") == "kalman":
-        return symobs.kalman(plant, W=problem["W"], V=problem["V"])
+        return symobs.kalman(plant, W=problem["W"], V=problem["V"], G=problem.get("G"))
     return symobs.lqr(plant, Q=problem["Q"], R=problem["R"], N=problem.get("N"))
 
 
@@ -141,8 +141,8 @@ def test_textbook_problems(problem: dict[str, Any]) -> None:
         assert (getattr(result, name) - read(problem[name])).applyfunc(sympy.nsimplify).applyfunc(
             sympy.simplify
         ) == sympy.zeros(*getattr(result, name).shape)
-    for name in {"K", "P"} if "K_decimals" in problem else ():
-        for found, printed in zip(result.decimals[name], problem.get(f"{name}_decimals", []), strict=False):
+    for name in (name for name in "KLP" if f"{name}_decimals" in problem):
+        for found, printed in zip(result.decimals[name], problem[f"{name}_decimals"], strict=True):
             half = [Fraction(1, 2 * 10 ** len(entry.partition(".")[2])) for entry in printed]
             pairs = zip(found, printed, half, strict=True)
             assert all(abs(Fraction(one) - Fraction(other)) <= off for one, other, off in pairs), problem["source"]
