@@ -108,6 +108,6 @@ def _read_entering(value: object, plant: StateSpace) -> Matrix:
     """Return G with as many rows as there are states; raises `ShapeMismatch`."""
     found = read_matrix(from_list(value, column=True), plant.symbols.seen(value), "specification.G")
     if found.shape[0] != plant.order:
-        message = f"G has {found.shape[0]} rows, expected {plant.order}"
+        message = f"G is {found.shape[0]}×{found.shape[1]}, expected {plant.order} rows"
         raise ShapeMismatch(message, where="specification.G", repair="write a row for each state")
     return found

@@ -155,10 +155,11 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
     if not _tell_root_square(page, result):
         _tell_pencil(page, A, B, Q, R)
     page.define("p_s", page.value(answer["polynomial"]), say="optimal_factor", closing=False)
-    for index, name in enumerate(page.forms):
-        root, radicand = (page.value(each) for each in (Scalar.symbol(name), function_named(name).argument))
-        say = "optimal_next_root" if index else "optimal_root"
-        page.conclude(say, root=relation(root**2, radicand), positive=relation(root, ">", 0))
+    named = (root for name in page.forms if (root := function_named(name)) is not None)
+    for index, root in enumerate(named):
+        letter_of, say = page.value(root.value), "optimal_next_root" if index else "optimal_root"
+        square = relation(letter_of**2, page.value(root.argument))
+        page.conclude(say, root=square, positive=relation(letter_of, ">", 0))
     _tell_locus(page, Q, R)
     if _open_radicands(page, [answer["P"], *answer["factors"]]):
         page.remark("optimal_roots_real")
