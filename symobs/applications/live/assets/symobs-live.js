@@ -178,7 +178,7 @@ export function mount(element, transport, options = {}) {
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
-  let aborted = new AbortController(), language = null, notice = "", point = null, pinned = [], turns = 0, turning = 0, isLetGo = false, fill = () => {};
+  let aborted = new AbortController(), language = null, notice = "", point = null, pinned = [], turns = 0, turning = 0, isLetGo = false, fill = () => {}, release = () => {};
   let origin = encoded(s), steps = [origin], reached = 0;
   const el = {};
 
@@ -373,15 +373,14 @@ export function mount(element, transport, options = {}) {
       aborted = new AbortController();
       const signal = aborted.signal, at = free(), asked = question("page");
       el.page.setAttribute("aria-busy", "true");
-      try {
-        const got = await transport(asking("page", { detail: s.detail, at, cards_at: Object.keys(at).length > 0 }), signal);
-        if (signal.aborted) return;
-        answered.page = asked;
-        fade();
-        if (got.html) el.html.innerHTML = got.html;
-        else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), got.status === "undecided" ? h("button", { onclick: () => rest(0) }, w("try_again")) : null);
-        el.page.setAttribute("aria-busy", "false");
-      } catch { /* a newer question has taken its place */ }
+      const inquiry = asking("page", { detail: s.detail, at, cards_at: Object.keys(at).length > 0 });
+      const got = await transport(inquiry, signal).catch((error) => ({ status: "undecided", message: w("no_answer", { reason: why(error) }) }));
+      if (signal.aborted || gone) return;  // a newer question has taken its place
+      answered.page = asked;
+      fade();
+      if (got.html) el.html.innerHTML = got.html;
+      else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), ...(got.status === "undecided" ? [h("button", { onclick: () => rest(0) }, w("try_again"))] : []));
+      el.page.setAttribute("aria-busy", "false");
     }, after);
   }
 
@@ -522,7 +521,14 @@ export function mount(element, transport, options = {}) {
     again.setSelectionRange?.(active.selectionStart, active.selectionEnd);
   }
 
-  function build() { keepingFocus(buildFields); }
+  /** Hold nothing any more: what is held belongs to fields and pictures that are built anew. */
+  function drop() {
+    release();
+    held = null;
+    release = () => {};
+  }
+
+  function build() { drop(); keepingFocus(buildFields); }
 
   function buildFields() {
     const isFresh = furnish();
@@ -608,7 +614,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function takeView() {
-    if (!held) build();  // a slider that is held stays
+    if (held !== "slider") build();  // a slider that is held stays
     point = null;
     el.map.replaceChildren();
     if (view.panels.includes("region")) drawMap();
@@ -792,11 +798,8 @@ export function mount(element, transport, options = {}) {
     event.preventDefault();
     svg.setPointerCapture(event.pointerId);
     const heard = [[svg, "pointermove", follow], [svg, "pointerup", () => end(false)], [svg, "pointercancel", () => end(true)], [document, "keydown", (e) => { if (e.key === "Escape") { e.stopPropagation(); end(true); } }]];
-    const end = (back) => {
-      for (const [where, what, hear] of heard) where.removeEventListener(what, hear, true);
-      held = null;
-      ended(back);
-    };
+    release = () => heard.forEach(([where, what, hear]) => where.removeEventListener(what, hear, true));
+    const end = (back) => { drop(); ended(back); };
     for (const [where, what, hear] of heard) where.addEventListener(what, hear, true);
   }
 
