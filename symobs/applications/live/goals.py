@@ -1,21 +1,23 @@
-"""Goals of a design that its poles and gains are held against: settling time, overshoot, largest gain.
+"""Goals of a design: settling time and overshoot of its poles, its largest gain, the phase margin of its loop.
 
 Settling and overshoot are those of every mode alone, so that they are lines in the plane of the poles.
 """
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import exp, inf, log, pi
 from typing import TYPE_CHECKING, Any
 
+from symobs.applications.live.frequency_response import phase_margin
 from symobs.applications.live.request import FieldError
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
+from symobs.exact.algebraic.loop_distances import INFINITE
 from symobs.system import Symbols, read_scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-    from fractions import Fraction
 
     from symobs.tasks.result import Result
 
@@ -47,6 +49,8 @@ def goals_of(
         if entries:
             met = False if "negative" in signs else None if "real" in signs else True
             found["gain"] = {"met": met}
+    if (limit := limits.get("phase")) is not None and (margin := phase_margin(result)) is not None:
+        found["phase"] = {"met": margin == INFINITE or Fraction(margin) >= limit, "value": _digits(float(margin))}
     return found
 
 

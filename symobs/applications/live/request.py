@@ -40,15 +40,20 @@ EXPORTS = ("latex", "toml", "python", "json", "html", "svg")
 FORMATS = ("mathml",)
 
 
+#: The frequency response of the loop: not wanted, without the ends of the gain, or whole.
+LOOPS = ("none", "moving", "rest")
+
+
 _KEYS = {
     "schema", "id", "want", "problem", "task", "at", "cards", "cards_at", "courses", "cases", "format", "detail", "as", "goal",
+    "loop",
 }  # fmt: skip
 
 
 _COURSES = {"start", "estimate", "end", "count", "step"}
 
 
-_GOALS = {"settling", "overshoot", "gain"}
+_GOALS = {"settling", "overshoot", "gain", "phase"}
 
 
 _NAME = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|[A-Za-z_]\w*")
@@ -105,6 +110,7 @@ class Request:
     goal: Mapping[str, str]
     detail: str
     export: str
+    loop: str
 
     def problem(self) -> Problem:
         """Return the problem as it was given."""
@@ -177,6 +183,7 @@ def read(body: object) -> Request:
         identity = None
     one_of("format", FORMATS)
     want, detail, export = one_of("want", WANTS), one_of("detail", DETAILS), one_of("as", EXPORTS)
+    loop = one_of("loop", LOOPS)
     data = body.get("problem", {})
     if not isinstance(data, Mapping):
         note("an object is expected", "problem", "send a problem file as JSON")
@@ -198,7 +205,7 @@ def read(body: object) -> Request:
         goal = {}
     if errors:
         raise ProblemErrors(tuple(errors))
-    return Request(identity, want, data, task, at, names, cards_at, cases, responses, goal, detail, export)
+    return Request(identity, want, data, task, at, names, cards_at, cases, responses, goal, detail, export, loop)
 
 
 def _refuse(value: object, where: str, depth: int, note: Any) -> None:

@@ -8,9 +8,9 @@ const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
 const SHORT = { control: "control_poles", observer: "observer_poles", order: "observer" };
 const PLANT = ["A", "B", "C", "D", "transfer_function", "dt"];
 const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0", "step", "goal"];
-const GOALS = ["settling", "overshoot", "gain"], MOST_PINNED = 3;
+const GOALS = ["settling", "overshoot", "gain", "phase"], MOST_PINNED = 3;
 const DETAILS = ["full", "outline", "answer"];
-const PANELS = ["plane", "responses", "cards", "cases", "region", "page"];
+const PANELS = ["plane", "responses", "loop", "cards", "cases", "region", "page"];
 
 /** The words of each language by its code; whoever hands out this file puts them in. @type {Record<string, Record<string, string>>} */
 export const LANGUAGES = {};
@@ -120,7 +120,7 @@ function decoded(link) {
   const state = { task: given.task ?? "", plant: {}, spec: {}, symbols: {}, at: {}, convention: given.convention ?? "", language: given.language ?? "" };
   const listed = (source) => Object.fromEntries((source ?? "").split(",").filter(Boolean).map((e) => e.split(/:(.*)/s)).map(([name, entry = ""]) => [name, entry.replace(/%2C/g, ",")]));
   Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at), goal: listed(given.goal) });
-  Object.assign(state, { snap: given.snap in SNAPS ? given.snap : "1/2", closed: (given.closed ?? "").split(",").filter(Boolean) });
+  Object.assign(state, { snap: given.snap in SNAPS ? given.snap : "1/2", closed: (given.closed ?? "loop").split(",").filter((name) => PANELS.includes(name)) });
   Object.assign(state, { detail: DETAILS.includes(given.detail) ? given.detail : "full", x0: given.x0 ?? "", xh0: given.xh0 ?? "", step: given.step ?? "" });
   for (const [key, entry] of Object.entries(given)) {
     if (PLANT.includes(key)) state.plant[key] = entry;
@@ -135,7 +135,7 @@ function encoded(state) {
   const spec = Object.fromEntries(Object.entries(state.spec).map(([key, entry]) => [long[key] ?? key, entry]));
   const all = { v: 1, task: state.task, ...state.plant, ...spec, symbols: paired(state.symbols), at: paired(state.at) };
   Object.assign(all, { convention: state.convention, language: state.language, snap: state.snap === "1/2" ? "" : state.snap });
-  Object.assign(all, { closed: state.closed.join(","), detail: state.detail === "full" ? "" : state.detail, x0: state.x0, xh0: state.xh0, step: state.step, goal: paired(state.goal) });
+  Object.assign(all, { closed: String(state.closed) === "loop" ? "" : state.closed.join(",") || "none", detail: state.detail === "full" ? "" : state.detail, x0: state.x0, xh0: state.xh0, step: state.step, goal: paired(state.goal) });
   const plain = (t) => encodeURIComponent(t).replace(/%(2C|3B|3A|2F|5B|5D|5E)/g, decodeURIComponent);
   return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
 }
@@ -183,7 +183,7 @@ export function mount(element, transport, options = {}) {
   const el = {};
 
   const w = (name, slots = {}) => filled(language[name], slots);
-  const pretty = (s) => s.replace(/-/g, "−").replace(/(\d)\.(?=\d)/g, `$1${language.decimal_mark}`);
+  const pretty = (s) => s.replace(/(?<!\p{L}{2})-|-(?!\p{L}{2})/gu, "−").replace(/(\d)\.(?=\d)/g, `$1${language.decimal_mark}`);
   const taskName = (task) => language[`task_${task}`] ?? task.replace(/_/g, " ");
   const labelOf = (key) => language[`field_${key}`] ?? key.replace(/_/g, " ");
   const why = (error) => (error.status ? w(error.status === 403 ? "another_page" : "server_says", error) : error.message);
@@ -221,6 +221,8 @@ export function mount(element, transport, options = {}) {
     el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img", "aria-label": w("responses") });
     el.effort = h("svg:svg", { class: "picture effort", viewBox: "0 0 480 300", role: "img", "aria-label": w("effort") });
     el.efforts = h("p", { class: "legend" });
+    for (const name of ["magnitude", "phase", "locus"]) el[name] = h("svg:svg", { class: "picture effort", viewBox: "0 0 480 300", role: "img", "aria-label": w(name) });
+    for (const name of ["margins", "magnitudes", "phases", "loci"]) el[name] = h("p", { class: "legend" });
     el.goals = h("div", { class: "fields" });
     el.required = h("details", { class: "goals", open: Object.keys(s.goal).length > 0 }, h("summary", {}, w("goals")), el.goals);
     el.starts = h("div", { class: "fields starts" });
@@ -233,7 +235,7 @@ export function mount(element, transport, options = {}) {
     root.replaceChildren(
       h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, el.titles, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
       el.message,
-      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.required, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("cases"), panel("cards", el.verdict, el.notes, el.list, el.pins), panel("page", el.html)),
+      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.required, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("loop", el.margins, [[el.magnitude, el.magnitudes], [el.phase, el.phases], [el.locus, el.loci]].map((each) => h("div", {}, each))), panel("cases"), panel("cards", el.verdict, el.notes, el.list, el.pins), panel("page", el.html)),
       el.live,
     );
     el.drive = h("select", { "aria-label": w("drive"), onchange: () => { s.step = el.drive.value; commit(true); ask(); } }, [["", "drive_state"], ["1", "drive_step"]].map(([value, word]) => h("option", { value }, w(word))));
@@ -291,6 +293,8 @@ export function mount(element, transport, options = {}) {
     el.map.classList.toggle("old", isOld("region"));
     el.point.classList.toggle("old", isOld("region") || isOld("point"));
     el.page.classList.toggle("old", isOld("page"));
+    el.plane.inert = view && view.task !== s.task;  // they would move what the problem on the screen does not have
+    el.region.inert = signature() !== viewed;
   }
 
   const asking = (want, more = {}) => ({ schema: SCHEMA, id: ++number, want, problem: problem(), ...more });
@@ -329,7 +333,7 @@ export function mount(element, transport, options = {}) {
           if (waiting || moving || got.status !== "done") continue;
         }
         const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, step: isStep(), end: null, count: 129 } : undefined;
-        const more = { at, goal: s.goal, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases") };
+        const more = { at, goal: s.goal, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases"), loop: open("loop") ? (moving ? "moving" : "rest") : "none" };
         if (courses) more.courses = courses;
         const asked = question("answer"), got = await transport(asking("answer", more));
         if (got.id >= drawn || !got.id) drawAnswer(got, asked);
@@ -995,6 +999,7 @@ export function mount(element, transport, options = {}) {
       drawCurves(el.effort, el.efforts, got.courses?.effort, got.courses);
       el.starts.hidden = isStep();
     }
+    if (!el.loop.hidden) drawLoop(got.loop);
     drawPlane(isLetGo);  // the poles of F are known now
     isLetGo = false;
   }
@@ -1051,22 +1056,39 @@ export function mount(element, transport, options = {}) {
     const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf));
     const px = (t) => 40 + ((t - t0) / (t1 - t0)) * 424, py = (v) => 268 - ((v - low) / (high - low || 1)) * 252;
     const made = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
-    for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(t))));
-    for (const v of ticks(low, high, 6)) made.push(h("svg:line", { class: v ? "rule" : "axis", x1: 40, y1: py(v), x2: 464, y2: py(v) }), h("svg:text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
-    made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, all.discrete ? "k" : "t"));
+    for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(all.lg ? Number((10 ** t).toPrecision(1)) : t))));
+    for (const v of got.rules ?? ticks(low, high, 6)) made.push(h("svg:line", { class: v === (got.axis ?? 0) ? "axis" : "rule", x1: 40, y1: py(v), x2: 464, y2: py(v) }), h("svg:text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
+    made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, all.lg ?? (all.discrete ? "k" : "t")));
     const told = [], named = [];
     for (const line of got.lines) {
       const n = line.heights.length - 1, place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
       const kind = `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`;
-      made.push(h("svg:path", { class: kind, d: `M${line.heights.map(place).join("L")}` }));
+      made.push(h("svg:path", { class: kind, d: pathOf(line.heights, place) }));
       if (all.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
       const settles = [line.overshoot ? w("overshoots", { percent: pretty(line.overshoot) }) : "", line.settles ? w("settles", { time: pretty(line.settles) }) : "", line.signal === "u" && line.peak ? w("peak", { peak: pretty(line.peak) }) : ""].filter(Boolean).join(", ");
       if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(line.last) })}${settles && `, ${settles}`}`);
       named.push(h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
     }
-    svg.setAttribute("aria-label", w("up_to", { end: all.end, told: told.join("; ") }));
+    if (told.length) svg.setAttribute("aria-label", w("up_to", { end: all.end, told: told.join("; ") }));
     svg.replaceChildren(...made);
     legend.replaceChildren(...named);
+  }
+
+  /** A path through points, with gaps where one is not known. */
+  const pathOf = (points, place) => points.reduce((path, p, k) => (p === null ? path : `${path}${k && points[k - 1] !== null ? "L" : "M"}${place(p, k)}`), "");
+
+  /** Draw a loop over the frequency, in its plane, and say how far it is from instability. */
+  function drawLoop(got) {
+    drawCurves(el.magnitude, el.magnitudes, got?.magnitude, { lg: "ω" });
+    drawCurves(el.phase, el.phases, got && { ...got.phase, axis: -180 }, { lg: "ω" });
+    if (got) for (const [name, place] of [["magnitude", "magnitudes"], ["phase", "phases"], ["locus", "loci"]]) el[place].textContent = w(name);
+    el.margins.textContent = got ? pretty(got.says) : w("no_loop");
+    el.locus.classList.toggle("absent", !got);
+    if (!got) { el.loci.textContent = ""; return; }
+    const scale = 126 / Number(got.reach), x = (re) => 252 + re * scale, y = (im) => 142 - im * scale;
+    const line = (x1, y1, x2, y2) => h("svg:line", { class: "axis", x1, y1, x2, y2 }), clip = `symobs-clip-${mounted}`;
+    const curve = (sign, more) => h("svg:path", { class: `curve c0${more}`, "clip-path": `url(#${clip})`, d: pathOf(got.locus.map((p) => (p.includes(null) ? null : p)), (p) => `${x(p[0] / got.parts).toFixed(1)} ${y((sign * p[1]) / got.parts).toFixed(1)}`) });
+    el.locus.replaceChildren(h("svg:clipPath", { id: clip }, h("svg:rect", { x: 40, y: 16, width: 424, height: 252 })), h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 }), line(40, y(0), 464, y(0)), line(x(0), 16, x(0), 268), h("svg:circle", { class: "mark", cx: x(0), cy: y(0), r: scale, "clip-path": `url(#${clip})` }), h("svg:path", { class: "mark F", d: MARKS.F(x(-1), y(0)) }), h("svg:text", { x: x(-1), y: y(0) + 18, "text-anchor": "middle" }, "−1"), curve(-1, " dashed"), curve(1, ""));
   }
 
   // -- begin ------------------------------------------------------------------------------------------------------------

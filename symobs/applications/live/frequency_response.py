@@ -1,0 +1,138 @@
+"""The frequency response of a loop as whole numbers over `parts`, for Bode and Nyquist, and its margins."""
+
+from __future__ import annotations
+
+from math import ceil, floor, log10, pi
+from typing import TYPE_CHECKING, Any
+
+from flint import acb, arb, fmpz_poly
+
+from symobs.exact import RealNumber
+from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
+from symobs.exact.algebraic.root_location import integers
+from symobs.exact.core.ring import Precision
+from symobs.ground.errors import InputError
+from symobs.tasks.analysis.stability_region.margins import NotRational, gains_of, numbers
+from symobs.tasks.design.margins.margins import Margins, loop_of
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    from symobs.exact import Scalar
+    from symobs.formula.phrases.languages import Language
+    from symobs.tasks.result import Result
+
+_BITS, _PARTS, _POINTS = 128, 1000, 160
+#: The plane of Nyquist shows at least and at most so far from 0; ends of the gain have so many digits after the point.
+_LEAST, _MOST, _DIGITS, _SHORT = 1.2, 3.0, 4, 9
+
+
+def loop_polynomials(result: Result) -> tuple[Scalar, Scalar] | None:
+    """Return P + N and P of the loop N/P of a result; None where it has no single one, or none that moves anything."""
+    try:
+        found = (result.answer["closed"], result.answer["opened"]) if isinstance(result, Margins) else loop_of(result)
+    except InputError:
+        return None
+    return None if found[0] is None or found[0] == found[1] else found
+
+
+def _coefficients(result: Result) -> tuple[list[Fraction], list[Fraction]] | None:
+    """Return P + N and P of a loop of rational numbers; None of any other."""
+    found = loop_polynomials(result)
+    try:
+        return None if found is None else tuple(list(numbers(part, result.plant.variable)) for part in found)
+    except NotRational:
+        return None
+
+
+def phase_margin(result: Result) -> str | None:
+    """Return the phase margin in degrees; None where there is none, or the closed loop is not stable."""
+    found, discrete = _coefficients(result), result.plant.is_discrete
+    if found is None or not slowest_root(found[0], discrete=discrete) < RealNumber.of(int(discrete)):
+        return None
+    return Loop.of(*found, discrete=discrete).phase(MARGIN_DIGITS)
+
+
+def frequency_response(result: Result, language: Language, *, moving: bool) -> dict[str, Any] | None:
+    """Return magnitude, phase and locus, and the margins in a sentence, while poles move without the ends of the gain."""
+    found, plant, said = _coefficients(result), result.plant, language.phrases
+    if found is None:
+        return None
+    drawn, phase = _curves(*found, discrete=plant.is_discrete), phase_margin(result)
+    if phase is None:
+        return drawn | {"says": said["said_no_margins"]}
+    told = {"phase_deg": "∞" if phase == INFINITE else language.decimal(phase)}
+    if not moving:
+        ends = gains_of(*loop_polynomials(result), plant.dt)
+        told |= {name: language.decimal(_end(end)) for name, end in zip(("gain_down", "gain_up"), ends, strict=True)}
+    return drawn | {"says": said["said_phase_margin" if moving else "said_margins"].format(**told)}
+
+
+def _end(value: RealNumber | str) -> str:
+    """Return an end of the gain: itself where it is a short fraction, else rounded to certain digits."""
+    if isinstance(value, str):
+        return "∞"
+    return str(value.fraction) if value.is_rational and len(str(value.fraction)) <= _SHORT else value.decimal(_DIGITS)
+
+
+def _curves(above: list[Fraction], below: list[Fraction], *, discrete: bool) -> dict[str, Any]:
+    """Return the loop on the boundary of stability; the phase is a sum over zeros and poles, so that it has no jumps."""
+    whole = integers([*above, *below])
+    closed, opened = (fmpz_poly(part[::-1]) for part in (whole[: len(above)], whole[len(above) :]))
+    moved = closed - opened
+    with Precision(_BITS):
+        factors = [(root, power) for root, power in moved.complex_roots()]
+        factors += [(root, -power) for root, power in opened.complex_roots()]
+        gain = (acb(moved[moved.degree()]) / acb(opened[opened.degree()])).log()
+        low, high = _frequencies([root for root, _ in [*factors, *closed.complex_roots()]], discrete=discrete)
+        values = []
+        for k in range(_POINTS + 1):
+            frequency = arb(min(high, low * (high / low) ** (k / _POINTS)))
+            turned = acb(0, frequency)
+            logarithm = gain + sum(
+                (power * _logarithm(turned, root, discrete=discrete) for root, power in factors), acb(0)
+            )
+            values.append((logarithm, logarithm.exp()))
+        magnitude = [_whole(20 * logarithm.real / arb(10).log()) for logarithm, _ in values]
+        phase = [_whole(180 * logarithm.imag / arb.pi()) for logarithm, _ in values]
+        locus = [[_whole(value.real), _whole(value.imag)] for _, value in values]
+    reach = max((abs(part) for point in locus for part in point if part is not None), default=0) / _PARTS
+    ends = [str(log10(low)), str(log10(high))]
+    return {
+        "magnitude": _picture(magnitude, ends, "dB", 20),
+        "phase": _picture(phase, ends, "°", 45),
+        "locus": [[None if p is None or abs(p) > 2 * _MOST * _PARTS else p for p in point] for point in locus],
+        "reach": f"{min(max(reach, _LEAST), _MOST):.3g}",
+        "parts": _PARTS,
+    }
+
+
+def _frequencies(roots: list[Any], *, discrete: bool) -> tuple[float, float]:
+    """Return decades around the moduli of the roots; in discrete time angles up to π."""
+    sizes = [size for root in roots if (size := float(abs(root - 1 if discrete else root).mid())) > 1e-9] or [1.0]
+    low = 10.0 ** floor(log10(min(sizes) / 3))
+    return (min(low, 0.1), pi) if discrete else (low, 10.0 ** ceil(log10(max(sizes) * 3)))
+
+
+def _logarithm(turned: acb, root: acb, *, discrete: bool) -> acb:
+    """Return log(s − r) on a branch that is continuous along the boundary, `turned` is log s in discrete time, else s."""
+    if discrete:
+        s = turned.exp()
+        return turned + (1 - root / s).log() if bool(abs(root) <= 1) else (-root).log() + (1 - s / root).log()
+    return (root - turned).log() + acb(0, arb.pi()) if bool(root.real > 0) else (turned - root).log()
+
+
+def _whole(value: arb) -> int | None:
+    """Return a number in parts; None where it is not finite or not known so well."""
+    return round(float(value.mid()) * _PARTS) if value.is_finite() and float(value.rad()) < 1 / _PARTS else None
+
+
+def _picture(heights: list[int | None], ends: list[str], signal: str, unit: int) -> dict[str, Any]:
+    """Return one curve over the logarithm of the frequency, with a window of whole units around it."""
+    known = [height for height in heights if height is not None]
+    low, high = (f(g(known) / (unit * _PARTS)) * unit for f, g in ((floor, min), (ceil, max)))
+    high += unit * (low == high)
+    every = unit * max(1, ceil((high - low) / (7 * unit)))
+    line = {"signal": signal, "component": 0, "dashed": False, "heights": heights}
+    rules = [*range(-(-low // every) * every, high + 1, every)]
+    return {"parts": _PARTS, "window": [ends, [str(low), str(high)]], "lines": [line], "rules": rules}
