@@ -419,6 +419,18 @@ def test_tab_goes_through_the_entries_and_a_matrix_grows(opened: Callable[..., O
     assert problem_of(live.page.url)[0]["plant"] == {"A": "[0 1; -2 1]", "B": "[0; 1]", "C": "[1 0]"}
 
 
+def test_matrices_that_do_not_fit_grow_without_harm(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    live.page.click(".astext summary")
+    live.page.fill('[data-where="text.A"]', "-2")
+    live.page.press('[data-where="text.A"]', "Tab")
+    live.page.wait_for_selector(".symobs-live.stale :is(.wrong, .message span):not(:empty)")
+    for kind in ("inputs", "states"):
+        live.page.get_by_role("button", name=f"more {kind}").click()
+        live.wait_for("!document.querySelector('.symobs-live.busy')")
+    assert problem_of(live.page.url)[0]["plant"]["A"] == "-2"  # there is no such problem, and the one shown stays
+
+
 def test_the_only_real_pole_of_a_set_stays_on_the_axis(opened: Callable[..., Opened]) -> None:
     live = opened(SERVO.replace("observer=-10, -10", "observer=-4&order=minimal"))
     x, y = live.middle("observer_poles.0")
@@ -629,7 +641,7 @@ def walked(live: Opened, seed: int, steps: int, switch: Callable[[bool], None]) 
             dead = not dead
             switch(dead)
         act(page, draw, picked)
-        page.wait_for_timeout(300)  # longer than the page waits before it says that it is busy
+        page.wait_for_timeout(200)  # longer than the page waits before it says that it is busy
         live.wait_for("!document.querySelector('.symobs-live[aria-busy=true]')")
         where = f"step {step} of {seed}: {page.url}"
         assert [said for said in live.complaints if "net::ERR_" not in said] == [], where
@@ -649,6 +661,18 @@ def walked(live: Opened, seed: int, steps: int, switch: Callable[[bool], None]) 
         assert page.locator(".card:not(.conditions)").count() == len(told["cards"]), where
         said = page.text_content(".cards .verdict").replace("−", "-")
         assert said.startswith(told["says"]), where
+        if page.locator(".point:not(.old):visible > .verdict").count():
+            there = {
+                field: page.input_value(f'.point [data-where="at.{field}"]') for field in seen["region"]["parameters"]
+            }
+            there = seen["region"].get("drawn_for", {}) | at | there
+            point = answer({"schema": "symobs-live/1", "want": "point", "problem": problem, "at": there})
+            assert page.get_attribute(".point .verdict", "data-verdict") == point["verdict"], where
+        if step % 5 == 0 and page.locator(".page:not(.old):not([aria-busy=true]):visible math").count():
+            derived = answer(
+                {"schema": "symobs-live/1", "want": "page", "problem": problem, "at": at, "cards_at": bool(at)}
+            )
+            assert page.locator(".html math").count() == derived["html"].count("<math"), where
         full += 1
     dead = False
     switch(dead)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live.assets import SCHEMA, language_asked
 from symobs.applications.live.beginning import begun, halves
-from symobs.applications.live.frequency_response import frequency_response, loop_polynomials
+from symobs.applications.live.frequency_response import frequency_response, shows_loop
 from symobs.applications.live.goals import goals_of
 from symobs.applications.live.page import export_object, page_object
 from symobs.applications.live.request import FieldError, Request, link_of, put_in, read
@@ -233,7 +233,7 @@ def view_object(result: Result, specification: Any) -> dict[str, Any]:
         "task": result.task,
         "discrete": plant.is_discrete,
         "order": plant.order,
-        "panels": [*result.panels, *["loop"] * (loop_polynomials(result) is not None), "cards", "page"],
+        "panels": [*result.panels, *["loop"] * shows_loop(result), "cards", "page"],
         "sets": sets,
         "cards": list(result.cards or result.letters),
         "gains": list(result.gains),

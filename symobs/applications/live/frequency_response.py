@@ -8,40 +8,43 @@ from typing import TYPE_CHECKING, Any
 from flint import acb, arb, fmpz_poly
 
 from symobs.exact import RealNumber
+from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
 from symobs.exact.algebraic.root_location import integers
 from symobs.exact.core.ring import Precision
 from symobs.ground.errors import InputError
 from symobs.tasks.analysis.stability_region.margins import NotRational, gains_of, numbers
-from symobs.tasks.design.margins.margins import Margins, loop_of
+from symobs.tasks.design.margins.margins import Margins, has_loop, loop_of
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
-    from symobs.exact import Scalar
     from symobs.formula.phrases.languages import Language
     from symobs.tasks.result import Result
 
 _BITS, _PARTS, _POINTS = 128, 1000, 160
 #: The plane of Nyquist shows at least and at most so far from 0; ends of the gain have so many digits after the point.
-_LEAST, _MOST, _DIGITS, _SHORT = 1.2, 3.0, 4, 9
+_LEAST, _MOST, _DIGITS, _SHORT = 1.2, 2.0, 4, 9
 
 
-def loop_polynomials(result: Result) -> tuple[Scalar, Scalar] | None:
-    """Return P + N and P of the loop N/P of a result; None where it has no single one, or none that moves anything."""
-    try:
-        found = (result.answer["closed"], result.answer["opened"]) if isinstance(result, Margins) else loop_of(result)
-    except InputError:
-        return None
-    return None if found[0] is None or found[0] == found[1] else found
+def shows_loop(result: Result) -> bool:
+    """Return whether a result is about one loop."""
+    return isinstance(result, Margins) or has_loop(result)
 
 
 def _coefficients(result: Result) -> tuple[list[Fraction], list[Fraction]] | None:
-    """Return P + N and P of a loop of rational numbers; None of any other."""
-    found = loop_polynomials(result)
+    """Return P + N and P of the loop N/P of a result; None where there is none, or its numbers are not rational."""
+    plant = result.plant
+    if not shows_loop(result) or not all(map(is_number, plant.matrices.A.entries)):
+        return None
     try:
-        return None if found is None else tuple(list(numbers(part, result.plant.variable)) for part in found)
-    except NotRational:
+        found = (result.answer["closed"], result.answer["opened"]) if isinstance(result, Margins) else loop_of(result)
+        return (
+            None
+            if None in found or found[0] == found[1]
+            else tuple(list(numbers(part, plant.variable)) for part in found)
+        )
+    except (InputError, NotRational):
         return None
 
 
@@ -63,7 +66,7 @@ def frequency_response(result: Result, language: Language, *, moving: bool) -> d
         return drawn | {"says": said["said_no_margins"]}
     told = {"phase_deg": "∞" if phase == INFINITE else language.decimal(phase)}
     if not moving:
-        ends = gains_of(*loop_polynomials(result), plant.dt)
+        ends = gains_of(*found, plant.dt)
         told |= {name: language.decimal(_end(end)) for name, end in zip(("gain_down", "gain_up"), ends, strict=True)}
     return drawn | {"says": said["said_phase_margin" if moving else "said_margins"].format(**told)}
 

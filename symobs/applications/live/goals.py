@@ -5,7 +5,6 @@ Settling and overshoot are those of every mode alone, so that they are lines in 
 
 from __future__ import annotations
 
-from fractions import Fraction
 from math import exp, inf, log, pi
 from typing import TYPE_CHECKING, Any
 
@@ -18,11 +17,12 @@ from symobs.system import Symbols, read_scalar
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+    from fractions import Fraction
 
     from symobs.tasks.result import Result
 
-#: Two floating-point values that are closer are not told apart: their own errors are much smaller.
-_TOLD_APART = 1e-9
+#: Two values that are relatively closer are not told apart: their own errors are smaller.
+_TOLD_APART = 1e-6
 
 
 def goals_of(
@@ -50,7 +50,8 @@ def goals_of(
             met = False if "negative" in signs else None if "real" in signs else True
             found["gain"] = {"met": met}
     if (limit := limits.get("phase")) is not None and (margin := phase_margin(result)) is not None:
-        found["phase"] = {"met": margin == INFINITE or Fraction(margin) >= limit, "value": _digits(float(margin))}
+        value = inf if margin == INFINITE else float(margin)
+        found["phase"] = {"met": value == inf or _within(float(limit), value), "value": _digits(value)}
     return found
 
 

@@ -581,7 +581,7 @@ export function mount(element, transport, options = {}) {
   /** Take away the last state, input or output, or add one: a state that drives the last one, an input or output of its own. */
   function resize(tables, kind, by) {
     const { A, B, C, D } = tables, unit = (size, k, entry) => Array.from({ length: size }, (_, j) => (j === k ? entry : "0"));
-    const wider = (table, column) => table?.forEach((row, i) => { if (by < 0) row.pop(); else row.push(column[i]); });
+    const wider = (table, column) => table?.forEach((row, i) => { if (by < 0) row.pop(); else row.push(column[i] ?? "0"); });
     const taller = (table, row) => { if (by < 0) table?.pop(); else table?.push(row); };
     const n = A?.length ?? 0, m = B?.[0].length ?? 0, p = C?.length ?? 0;
     if (kind === "states") {
@@ -1056,7 +1056,7 @@ export function mount(element, transport, options = {}) {
     const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf));
     const px = (t) => 40 + ((t - t0) / (t1 - t0)) * 424, py = (v) => 268 - ((v - low) / (high - low || 1)) * 252;
     const made = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
-    for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(all.lg ? Number((10 ** t).toPrecision(1)) : t))));
+    for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(all.lg ? Number((10 ** t).toPrecision(2)) : t))));
     for (const v of got.rules ?? ticks(low, high, 6)) made.push(h("svg:line", { class: v === (got.axis ?? 0) ? "axis" : "rule", x1: 40, y1: py(v), x2: 464, y2: py(v) }), h("svg:text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
     made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, all.lg ?? (all.discrete ? "k" : "t")));
     const told = [], named = [];

@@ -38,7 +38,7 @@ def margins_of(closed: Scalar, opened: Scalar, variable: str, dt: object) -> dic
         "modulus": loop.modulus(MARGIN_DIGITS),
     }
     found["peak"] = loop.peak(MARGIN_DIGITS)
-    found["gain_down"], found["gain_up"] = gains_of(closed, opened, dt)
+    found["gain_down"], found["gain_up"] = gains_of(above, below, dt)
     return found
 
 
@@ -50,11 +50,15 @@ def numbers(polynomial: Scalar, variable: str) -> Sequence[Fraction]:
     return [entry.fraction() for entry in found]
 
 
-def gains_of(closed: Scalar, opened: Scalar, dt: object) -> tuple[RealNumber | str, RealNumber | str]:
-    """Return the ends of the interval around 1 of the gains k > 0 for which P + kN is stable."""
+def gains_of(
+    closed: Sequence[Fraction], opened: Sequence[Fraction], dt: object
+) -> tuple[RealNumber | str, RealNumber | str]:
+    """Return the ends of the interval around 1 of the gains k > 0 for which P + kN is stable; P + N and P by coefficients."""
     if closed == opened:
         return RealNumber.of(0), INFINITE
-    moved = opened + Scalar.symbol("k") * (closed - opened)
+    variable, k, moved = Scalar.symbol("z" if dt else "s"), Scalar.symbol("k"), Scalar.of(0)
+    for one, other in zip(closed, opened, strict=True):
+        moved = moved * variable + Scalar.of(other) + k * Scalar.of(one - other)
     region: Any = stability_region(moved, symbols={"k": "positive"}, dt=dt, parameters="k")
     one = RealNumber.of(1)
     for piece in region.region.intervals:

@@ -129,7 +129,7 @@ class Margins(Result):
             how = "every interval by the roots at a point of it"
             ends = answer["gain_down"], answer["gain_up"]
             yield Statement(
-                "the ends of the gains around 1", lambda: how if gains_of(closed, opened, plant.dt) == ends else ""
+                "the ends of the gains around 1", lambda: how if gains_of(*self._coefficients, plant.dt) == ends else ""
             )
             yield Statement("angle, distance and peak", lambda: "interval arithmetic" if self._are_certain else "")
 
@@ -207,15 +207,20 @@ def public(value: Any) -> Any:
     return real_to_sympy(value) if isinstance(value, RealNumber) else Decimal(value)
 
 
+def has_loop(design: Any) -> bool:
+    """Return whether this is a design with one loop."""
+    kind = getattr(design, "task", "")
+    return kind in _LOOPS and design.verdict != "no" and getattr(design.plant, _LOOPS[kind][2]) == 1
+
+
 def loop_of(design: Any) -> tuple[Scalar, Scalar]:
     """Return P + N and P of a design; raises `InputError` where it has no such loop."""
-    kind = str(getattr(design, "task", type(design).__name__))
-    if kind not in _LOOPS or design.verdict == "no" or getattr(design.plant, _LOOPS[kind][2]) != 1:
+    if not has_loop(design):
         message = (
             "margins are those of one loop: a state feedback, an observer or a compensator with one input or output"
         )
         raise InputError(message, where="design", repair="give a design with numbers for a plant with one")
-    name, own, _ = _LOOPS[kind]
+    name, own, _ = _LOOPS[design.task]
     plant, fields = design.plant, design.fields
     opened = plant.matrices.A.characteristic_polynomial(plant.variable)
     if own is not None:

@@ -260,6 +260,53 @@ def test_goals_are_held_against_poles_and_gains() -> None:
         assert asked(SERVO, goal=wrong)["errors"][0]["where"] == where
 
 
+_LOOPS: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
+    "compensator": (SERVO["plant"], SERVO["specification"]),
+    "state_feedback": (
+        {"A": "[0 1 0; 0 0 1; 0 -2 -3]", "B": "[0; 0; 1]"},
+        {"poles": "-2+2*sqrt(3)*j, -2-2*sqrt(3)*j, -10"},
+    ),
+    "observer": ({"A": "[3 1; 0 1/4]", "C": "[1 0]", "dt": 1}, {"poles": "1/2, 1/3"}),
+}
+
+
+def _table(text: str) -> Any:
+    return np.array([[float(Fraction(entry)) for entry in row.split()] for row in text.strip("[]").split(";")])
+
+
+@pytest.mark.parametrize("task", _LOOPS)
+def test_the_frequency_response_is_that_of_the_loop(task: str) -> None:
+    plant, specification = _LOOPS[task]
+    told = asked({"task": task, "plant": plant, "specification": specification}, loop="rest", goal={"phase": "60"})
+    a, *others = (_table(plant[name]) for name in "ABC" if name in plant)
+    gains = [np.array(told["result"][name], dtype=object) for name in "KL" if name in told["result"]]
+    k, *rest = (np.vectorize(lambda entry: float(Fraction(entry)))(gain) for gain in gains)
+    if task == "compensator":
+        b, c, gain = *others, *rest
+        a = np.block([[a, 0 * a], [gain @ c, a - b @ k - gain @ c]])
+        b, c = np.vstack([b, 0 * b]), np.hstack([0 * k, k])
+    else:
+        b, c = (others[0], k) if task == "state_feedback" else (k, others[0])
+
+    def loop_at(frequency: float) -> complex:
+        s = np.exp(1j * frequency) if "dt" in plant else 1j * frequency
+        return complex((c @ np.linalg.solve(s * np.eye(len(a)) - a, b)).item())
+
+    loop = told["loop"]
+    low, high = map(float, loop["magnitude"]["window"][0])
+    phases = loop["phase"]["lines"][0]["heights"]
+    for place, magnitude in enumerate(loop["magnitude"]["lines"][0]["heights"]):
+        value = loop_at(10 ** (low + (high - low) * place / (len(phases) - 1)))
+        assert magnitude / 1000 == pytest.approx(20 * np.log10(abs(value)), abs=2e-3)
+        assert np.exp(1j * np.pi * phases[place] / 180000) == pytest.approx(value / abs(value), abs=1e-4)
+    assert max(abs(one - other) for one, other in itertools.pairwise(phases)) < 30_000
+    values = np.array([loop_at(frequency) for frequency in np.logspace(low, high, 20001)])
+    crossed = np.nonzero(np.diff(np.sign(abs(values) - 1)))[0]  # the angle to −1 where the locus meets the unit circle
+    margin = min(abs(np.degrees(np.angle(-values[crossed]))))
+    assert told["goal"]["phase"] == {"met": margin > 60, "value": f"{margin:.3g}"}
+    assert float(loop["says"].rpartition("≈ ")[2].rstrip("°")) == pytest.approx(margin, abs=0.05)
+
+
 def test_a_value_keeps_the_declared_sign() -> None:
     problem = {**DETECTABLE, "symbols": {"c": "positive"}}
     found = asked(problem, at={"c": "-1"}, cards_at=True)
