@@ -416,7 +416,12 @@ def _answer(asked: Request) -> dict[str, Any]:
         "says": sentence(result, stable, printer),
         "unstable": [str(pole) for pole in stable.poles] if result.gains and result.verdict != "no" else [],
         "courses": responses,
-        "goal": goals_of(there.result, ((re, im) for _, re, im in _placed(there)), asked.goal),
+        "goal": goals_of(
+            there.result,
+            ((re, im) for _, re, im in _placed(there)),
+            asked.goal,
+            responses["lines"] if responses and responses["step"] else None,
+        ),
     }
     if asked.loop != "none":
         whole["loop"] = frequency_response(there.result, language, moving=asked.loop == "moving")

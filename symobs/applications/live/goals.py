@@ -1,6 +1,6 @@
 """Goals of a design: settling time and overshoot of its poles, its largest gain, the phase margin of its loop.
 
-Settling and overshoot are those of every mode alone, so that they are lines in the plane of the poles.
+Settling and overshoot are those of every mode alone, which are lines in the plane of the poles.
 """
 
 from __future__ import annotations
@@ -16,19 +16,25 @@ from symobs.exact.algebraic.loop_distances import INFINITE
 from symobs.system import Symbols, read_scalar
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
     from fractions import Fraction
 
     from symobs.tasks.result import Result
 
-#: Two values that are relatively closer are not told apart: their own errors are smaller.
-_TOLD_APART = 1e-6
+#: Two values that are relatively closer are not told apart: their own errors are smaller; what was read off has three digits.
+_TOLD_APART, _ROUNDED = 1e-6, 5e-3
 
 
 def goals_of(
-    result: Result, poles: Iterable[tuple[Fraction, Fraction]], asked: Mapping[str, str]
+    result: Result,
+    poles: Iterable[tuple[Fraction, Fraction]],
+    asked: Mapping[str, str],
+    after_step: Sequence[Mapping[str, Any]] | None = None,
 ) -> dict[str, dict[str, Any]]:
-    """Return for each goal whether it is met (None: undecided), the value there, and the line in the plane."""
+    """Return for each goal whether it is met (None: undecided), the value there, and the line in the plane.
+
+    Settling and overshoot are those of the outputs after a step of the reference, where these are shown.
+    """
     placed, found = list(poles), dict[str, dict[str, Any]]()
     limits = {name: _positive(text, name) for name, text in asked.items()}
     if not result.plant.is_discrete and placed:
@@ -41,6 +47,12 @@ def goals_of(
             most = max((100 * exp(pi * float(re / abs(im))) if re < 0 else inf for re, im in placed if im), default=0.0)
             line = {"slope": f"{pi / log(100 / limit):.6g}"} if limit < 100 else {}
             found["overshoot"] = {"met": _within(most, float(limit)), "value": _digits(most), **line}
+        for name, key in (("settling", "settles"), ("overshoot", "overshoot")) if after_step is not None else ():
+            if name in found:
+                told = [line.get(key, "0" if key == "overshoot" and "peak" in line else "") for line in after_step]
+                most = max(map(float, told)) if all(told) else None
+                met = None if most is None else _within(most, float(limits[name]), _ROUNDED)
+                found[name] |= {"met": met, "value": "" if most is None else _digits(most)}
     if (limit := limits.get("gain")) is not None:
         entries = [entry for name in result.gains for entry in _entries(result.fields.get(name))]
         signs = [
@@ -66,8 +78,8 @@ def _entries(gain: object) -> tuple[Scalar, ...]:
     return tuple(gain.entries) if isinstance(gain, Matrix) else (gain,) if isinstance(gain, Scalar) else ()
 
 
-def _within(value: float, limit: float) -> bool | None:
-    return None if abs(value - limit) <= _TOLD_APART * limit else value < limit
+def _within(value: float, limit: float, apart: float = _TOLD_APART) -> bool | None:
+    return None if abs(value - limit) <= apart * limit else value < limit
 
 
 def _digits(value: float) -> str:

@@ -647,11 +647,14 @@ export function mount(element, transport, options = {}) {
     drawPlane(true);
   }
 
+  const goalName = (name) => w(`goal_${isStep() && /^[so]/.test(name) ? `${name}_after_step` : name}`);
+  const MET = { true: "✓", false: "✗" };
+
   /** Say beside each goal whether it is met. */
   function drawGoals() {
     for (const name of GOALS) {
       const box = el.goals.querySelector(`[data-where="goal.${name}"]`)?.closest(".field"), goal = answer.goal?.[name];
-      box?.querySelector("span").replaceChildren(w(`goal_${name}`), goal ? h("b", { class: "met", "data-met": String(goal.met) }, `${goal.value ? `: ${pretty(goal.value)} ` : " "}${{ true: "✓", false: "✗" }[goal.met] ?? "○"}`, h("span", { class: "hidden" }, w({ true: "met", false: "missed" }[goal.met] ?? "open"))) : "");
+      box?.querySelector("span").replaceChildren(goalName(name), goal ? h("b", { class: "met", "data-met": String(goal.met) }, `${goal.value ? `: ${pretty(goal.value)} ` : " "}${MET[goal.met] ?? "○"}`, h("span", { class: "hidden" }, w({ true: "met", false: "missed" }[goal.met] ?? "open"))) : "");
     }
   }
 
@@ -704,6 +707,10 @@ export function mount(element, transport, options = {}) {
       const list = sets[group.key] ?? [], count = list.length;
       list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
     }
+    GOALS.filter((name) => answer?.goal?.[name]).forEach((name, k) => {
+      const { met, value } = answer.goal[name];
+      parts.push(h("svg:text", { class: "readout", "data-met": String(met), x: 46, y: 32, dy: `${1.25 * k}em`, "aria-hidden": "true" }, `${MET[met] ?? "○"} ${goalName(name)} ${pretty(s.goal[name] ?? "")}${value ? ` (${pretty(value)})` : ""}`));
+    });
     if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330 }, w("in_fields")));
     el.poles.append(...parts);
     drawMarks();
@@ -763,7 +770,7 @@ export function mount(element, transport, options = {}) {
       "aria-label": w("one_of", { pole: w(group.label), number: k + 1, count }), "aria-roledescription": w("pole"), "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
       onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) { before = JSON.stringify(sets); drawPlane(); } },
     }, places.map(glyph));
-    const [x, y] = places[0], right = x < 300;
+    const [x, y] = places[0], right = x < 250;
     const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${text(p.im)} i` : text(p.re))];
     if (said?.damping && p.pair) lines.push(`ζ = ${pretty(said.damping)}, ${said.exact}`);
     if (said?.overshoot) lines.push(w("mode_overshoots", { percent: pretty(said.overshoot) }));

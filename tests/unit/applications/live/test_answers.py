@@ -18,6 +18,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
+from scipy.signal import step as step_response
 
 from symobs.applications.live import answer
 from symobs.applications.live.assets import MOST_BYTES
@@ -256,6 +257,13 @@ def test_goals_are_held_against_poles_and_gains() -> None:
     found = asked({**SERVO, "specification": poles}, goal=missed)["goal"]
     assert float(found["settling"]["re"]) == pytest.approx(-np.log(50) / 1.95, rel=1e-5)
     assert float(found["overshoot"]["slope"]) == pytest.approx(-np.pi / np.log(0.0432), rel=1e-5)
+    # after a step F(s)G(s)/(1 + F(s)G(s)) has a zero, and overshoots although its poles do not: here from SciPy
+    told = asked(SERVO, goal={"settling": "2.3", "overshoot": "4"}, courses={"step": True})["goal"]
+    times, heights = step_response(([319, 400], [1, 24, 184, 480, 400]), T=np.linspace(0, 12, 120_001))
+    late = times[np.nonzero(abs(heights - 1) > max(abs(heights - 1)) / 50)[0][-1]]
+    assert {name: each["met"] for name, each in told.items()} == {"settling": False, "overshoot": True}
+    assert float(told["overshoot"]["value"]) == pytest.approx(100 * (max(heights) - 1), abs=6e-3)
+    assert float(told["settling"]["value"]) == pytest.approx(late, rel=0.01)
     for wrong, where in (({"gain": "0"}, "goal.gain"), ({"gain": 1}, "goal"), ({"speed": "1"}, "goal")):
         assert asked(SERVO, goal=wrong)["errors"][0]["where"] == where
 
