@@ -259,14 +259,14 @@ def test_a_pole_is_read_off_when_it_is_pointed_at_and_put_back_by_escape(opened:
 
 def test_a_link_sets_a_task_which_the_page_checks(opened: Callable[..., Opened]) -> None:
     live = opened(f"{SERVO}&goal=settling:1,gain:100")
-    met = live.page.locator(".met")
+    met = live.page.locator("b.met")
     assert met.evaluate_all("all => all.map(e => e.dataset.met)") == ["false", "true"]  # ln 50 / 2 = 1.956
     assert live.page.locator(".goal").count() == 1
     field = live.page.locator('[data-set="control_poles"]')
     field.fill("-4, -4")  # K = [16 7], ln 50 / 4 = 0.978
     field.press("Tab")
     live.at_rest()
-    assert met.all_inner_texts()[0].startswith(": 0.978 ✓")
+    assert met.all_inner_texts()[0].startswith("(0.978) ✓")
     assert met.evaluate_all("all => all.map(e => e.dataset.met)") == ["true", "true"]
     live.page.fill('[data-where="goal.gain"]', "80")
     live.page.press('[data-where="goal.gain"]', "Tab")

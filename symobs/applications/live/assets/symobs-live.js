@@ -212,7 +212,7 @@ export function mount(element, transport, options = {}) {
     el.snap = h("select", { title: w("grid_of_poles"), onchange: () => { s.snap = el.snap.value; commit(true); drawPlane(); } }, Object.keys(SNAPS).map((k) => h("option", { value: k }, k)));
     el.message = h("div", { class: "message", hidden: true });
     for (const name of ["list", "map", "point"]) el[name] = h("div", { class: name });
-    for (const name of ["verdict", "notes", "legend", "marks", "hint"]) el[name] = h("p", { class: name });
+    for (const name of ["verdict", "notes", "legend", "marks", "met", "hint"]) el[name] = h("p", { class: name });
     el.hint.textContent = w("drag");
     el.pins = h("div", { class: "pins" });
     el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
@@ -235,7 +235,7 @@ export function mount(element, transport, options = {}) {
     root.replaceChildren(
       h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, el.titles, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
       el.message,
-      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.poles, el.marks, el.texts, el.required, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("loop", el.margins, [[el.magnitude, el.magnitudes], [el.phase, el.phases], [el.locus, el.loci]].map((each) => h("div", {}, each))), panel("cases"), panel("cards", el.verdict, el.notes, el.list, el.pins), panel("page", el.html)),
+      h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.met, el.poles, el.marks, el.texts, el.required, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("loop", el.margins, [[el.magnitude, el.magnitudes], [el.phase, el.phases], [el.locus, el.loci]].map((each) => h("div", {}, each))), panel("cases"), panel("cards", el.verdict, el.notes, el.list, el.pins), panel("page", el.html)),
       el.live,
     );
     el.drive = h("select", { "aria-label": w("drive"), onchange: () => { s.step = el.drive.value; commit(true); ask(); } }, [["", "drive_state"], ["1", "drive_step"]].map(([value, word]) => h("option", { value }, w(word))));
@@ -650,12 +650,13 @@ export function mount(element, transport, options = {}) {
   const goalName = (name) => w(`goal_${isStep() && /^[so]/.test(name) ? `${name}_after_step` : name}`);
   const MET = { true: "✓", false: "✗" };
 
-  /** Say beside each goal whether it is met. */
+  /** Say above the plane which goals are met. */
   function drawGoals() {
-    for (const name of GOALS) {
-      const box = el.goals.querySelector(`[data-where="goal.${name}"]`)?.closest(".field"), goal = answer.goal?.[name];
-      box?.querySelector("span").replaceChildren(goalName(name), goal ? h("b", { class: "met", "data-met": String(goal.met) }, `${goal.value ? `: ${pretty(goal.value)} ` : " "}${MET[goal.met] ?? "○"}`, h("span", { class: "hidden" }, w({ true: "met", false: "missed" }[goal.met] ?? "open"))) : "");
-    }
+    for (const name of GOALS) el.goals.querySelector(`[data-where="goal.${name}"]`)?.closest(".field").querySelector("span").replaceChildren(goalName(name));
+    el.met.replaceChildren(...GOALS.filter((name) => answer.goal?.[name]).map((name) => {
+      const { met, value } = answer.goal[name];
+      return h("span", {}, `${goalName(name)}: ${pretty(s.goal[name] ?? "")} `, h("b", { class: "met", "data-met": String(met) }, `${value ? `(${pretty(value)}) ` : ""}${MET[met] ?? "○"}`, h("span", { class: "hidden" }, w({ true: "met", false: "missed" }[met] ?? "open"))));
+    }));
   }
 
   function poleField(group) {
@@ -707,10 +708,6 @@ export function mount(element, transport, options = {}) {
       const list = sets[group.key] ?? [], count = list.length;
       list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
     }
-    GOALS.filter((name) => answer?.goal?.[name]).forEach((name, k) => {
-      const { met, value } = answer.goal[name];
-      parts.push(h("svg:text", { class: "readout", "data-met": String(met), x: 46, y: 32, dy: `${1.25 * k}em`, "aria-hidden": "true" }, `${MET[met] ?? "○"} ${goalName(name)} ${pretty(s.goal[name] ?? "")}${value ? ` (${pretty(value)})` : ""}`));
-    });
     if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330 }, w("in_fields")));
     el.poles.append(...parts);
     drawMarks();
