@@ -540,6 +540,9 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
         polynomial = to_disc(product_of(factors), variable, reduce=False)
     if max(entry.size for entry in (*P.entries, *gain.entries)) > _MOST_TERMS and is_numeric(regulator):
         raise NoFactor("its closed form is too long")
+    signs = with_signs(signs, P, gain, polynomial)
+    if stability(polynomial, variable, signs, discrete=regulator.discrete).verdict != "yes":
+        raise NoFactor("the signs of the square roots do not show that the loop is stable")
     return Solution(P, gain, polynomial, factors)
 
 

@@ -370,3 +370,10 @@ def test_margins_of_an_optimal_loop() -> None:
     # x' = x + u with Q = 3, R = 1: P = K = 3, and the loop 3/(s - 1) is stable for gains above 1/3.
     found = symobs.margins(symobs.lqr(symobs.StateSpace("[1]", "[1]"), Q="3", R="1"))
     assert (found["gain_down"], found["gain_up"], found["slowest"]) == (sympy.Rational(1, 3), sympy.oo, -2)
+
+
+def test_a_case_whose_loop_is_not_seen_to_be_stable_is_undecided() -> None:
+    """Of two equal columns the pair is controllable but where b = −(a + 1)(a² + a + 1), and there nothing is told."""
+    plant = symobs.StateSpace("[-1 b; -a 0]", "[a+1 a+1; -1 -1]", symbols={"a": "real", "b": "real"})
+    (case,) = symobs.lqr(plant, Q="1", R="1").case_tree
+    assert case.result is None
