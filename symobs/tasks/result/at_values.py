@@ -15,14 +15,13 @@ from symobs.exact.core.generators import NotWritten, substitute, symbols_in
 from symobs.exact.floating.sampled import ArrayFunction, at_points, evaluated, nearest_double, nested, shortest, sizes
 from symobs.formula.expression import parse_matrix, parse_polynomial
 from symobs.formula.expression.source import shown
-from symobs.ground.errors import CertificateRejected, InputError, ProblemErrors, SymobsError, together
+from symobs.ground.errors import InputError, ProblemErrors, SymobsError, together
 from symobs.system import StateSpace, read_matrix, read_scalar
 from symobs.system.conditions import sign_of
 from symobs.system.reading import has_decimals, inserted, read_values
 from symobs.system.specification import (
     from_list,
     is_pattern,
-    over_common_data,
     parse_in_steps,
     parse_signal,
     read_names,
@@ -63,7 +62,7 @@ def at_values(result: Any, given: Mapping[Any, Any]) -> Any:
     there = _plant(plant, values)
     there.is_in_decimals = there.is_in_decimals or has_decimals([*given.values()])
     moved = {name: _moved(value, values) for name, value in read.items() if values.keys() & _names(value)}
-    return _with_chosen(result, task(there, **{**result.specification, **moved}), values)
+    return task(there, **{**result.specification, **moved}).with_gains_of(result, values)
 
 
 def _values(given: Mapping[Any, Any], plant: StateSpace, asked: set[str]) -> dict[str, Scalar]:
@@ -102,23 +101,6 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
     there = there.with_symbols(replace(there.symbols, signs=left))
     there.is_from_floats, there.is_in_decimals = plant.is_from_floats, plant.is_in_decimals
     return there
-
-
-def _with_chosen(result: Any, found: Any, values: dict[str, Scalar]) -> Any:
-    """Return the found result with the gains that were chosen, which its constructor checks, where they serve here."""
-    for letters in [result.gains] if result.gains_are_one else [(letter,) for letter in result.gains]:
-        chosen = {letter: result.fields.get(letter) for letter in letters}
-        here = {letter: found.fields.get(letter) for letter in letters}
-        if not all(isinstance(gain, Matrix) for gain in (*chosen.values(), *here.values())):
-            continue
-        try:
-            _, kept = over_common_data(found.plant, *(substitute(gain, values) for gain in chosen.values()))
-            gains = dict(zip(letters, kept, strict=True))
-            if gains != here and all(map(found.plant.admits, kept)):
-                found = found.with_gains(gains)
-        except (ZeroDivisionError, CertificateRejected):  # it divides by zero here, or serves in general only
-            continue
-    return found
 
 
 # -- what a specification contains -----------------------------------------------------------------------------------

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from symobs.exact import Matrix
+from symobs.exact.core.generators import substitute
+from symobs.ground.errors import CertificateRejected
+from symobs.system.specification import over_common_data
 from symobs.tasks.result.output_methods import OutputMethods
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from symobs.exact import Matrix
+    from symobs.exact import Scalar
     from symobs.system import StateSpace
 
 
@@ -61,6 +65,23 @@ class TaskTraits(OutputMethods):
         found = self
         for name, gain in gains.items():
             found = found.with_answer(name, gain)
+        return found
+
+    def with_gains_of(self, main: Any, values: Mapping[str, Scalar]) -> Self:
+        """Return the result with the gains of the main line at values of its parameters, where they serve here."""
+        found = self
+        for letters in [main.gains] if main.gains_are_one else [(letter,) for letter in main.gains]:
+            chosen = {letter: main.fields.get(letter) for letter in letters}
+            here = {letter: found.fields.get(letter) for letter in letters}
+            if not all(isinstance(gain, Matrix) for gain in (*chosen.values(), *here.values())):
+                continue
+            try:
+                _, kept = over_common_data(found.plant, *(substitute(gain, values) for gain in chosen.values()))
+                gains = dict(zip(letters, kept, strict=True))
+                if gains != here and all(map(found.plant.admits, kept)):
+                    found = found.with_gains(gains)
+            except (ZeroDivisionError, CertificateRejected):  # it divides by zero here, or serves in general only
+                continue
         return found
 
     def following_from(self, gains: Mapping[str, Matrix]) -> Self:  # noqa: ARG002 - for those that have gains

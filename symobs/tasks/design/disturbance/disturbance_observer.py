@@ -162,7 +162,7 @@ class DisturbanceObserver(Result):
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
             exosystem = Exosystem(*(modulo(part.substitute(values), there.ideal) for part in self.exosystem))
             desired = self.desired.substitute(values)
-            return found_once(type(self), there, exosystem, desired, self.method)
+            return found_once(type(self), there, exosystem, desired, self.method).with_gains_of(self, values)
 
         return solved(self.plant, places_beside(self, self.inner), on)
 

@@ -228,7 +228,7 @@ class UnknownInputObserver(Result):
 
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
             E, desired = modulo(self.disturbance_input.substitute(values), there.ideal), self.desired.substitute(values)
-            return found_once(type(self), there, E, desired, self.method)
+            return found_once(type(self), there, E, desired, self.method).with_gains_of(self, values)
 
         return solved(self.plant, self.places, on)
 

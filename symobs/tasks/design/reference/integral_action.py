@@ -195,7 +195,9 @@ class IntegralAction(Result):
         """The design where other modes than in general are beyond any gain, or none are."""
 
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
-            return found_once(type(self), there, self.desired.substitute(values), self.method)
+            return found_once(type(self), there, self.desired.substitute(values), self.method).with_gains_of(
+                self, values
+            )
 
         return solved(self.plant, places_where(self.loop), on)
 

@@ -70,3 +70,12 @@ def test_more_disturbances_than_outputs_are_told_without_a_zero() -> None:
     found = symobs.disturbance_observer(plant, E="[1 0; 0 1]", poles="-1, -2, -3, -4")
     assert found.verdict == "no"
     assert "zero at the origin" not in found.to("text")
+
+
+def test_a_case_keeps_the_gain_of_the_main_line_where_that_serves() -> None:
+    """At a = 0 the constant disturbance has another kernel, and the gain, a polynomial in a, still places the poles."""
+    plant = symobs.StateSpace("[1 -2; 1 1]", "[-1; 1]", "[0 -2; -2 2]", dt=True, symbols={"a": "real"})
+    found = symobs.disturbance_observer(plant, E="[1; 0]", S="[0 a; -a 0]", poles="0, 1/2, -1/2, 1/3")
+    (case,) = found.case_tree
+    assert case.result is not None
+    assert case.result.fields["L_x"] == found.fields["L_x"].substitute(case.substitution)

@@ -136,7 +136,7 @@ def test_where_there_is_no_plant_and_where_a_sign_is_another() -> None:
 def test_a_wrong_value_of_a_gain_is_rejected_by_the_constructor(monkeypatch: pytest.MonkeyPatch) -> None:
     """A substitution that is wrong by one gives the gain of the plant itself, never a wrong one."""
     result = symobs.compensator(WIDE, control_poles="-1, -2, -k", observer_poles="-3, -4, -5")
-    module: Any = import_module("symobs.tasks.result.at_values")
+    module: Any = import_module("symobs.tasks.result.task_traits")
     right, rejected = module.substitute, []
 
     def wrong(value: Any, values: Any) -> Any:
