@@ -250,9 +250,11 @@ class OptimalGain(Result):
         if self.answer["P"] is None or is_numeric(self.regulator):
             return ()
         regulator, plant = self.regulator, self.plant
-        A, _, Q = regulator.uncrossed
-        c_0, signs = self.even.coefficients(plant.variable)[-1], plant.symbols.signs
-        found = [c_0.numerator, *([c_0.denominator] if plant.is_discrete else [])]
+        (A, S, Q), signs, one = regulator.uncrossed, plant.symbols.signs, Matrix.identity(plant.order)
+        found = [self.even.coefficients(plant.variable)[-1].numerator]
+        if plant.is_discrete:  # the pencil at 1 and -1: in the polynomial of H their common factors are cancelled
+            pencils = (Matrix.block([[one * z - A, S * z], [Q, A.T * z - one]]) for z in (1, -1))
+            found = [pencil.determinant().numerator for pencil in pencils]
         if plant.order == 2 and sign_of(Q[0, 0] + Q[1, 1], signs) != "positive":  # where Q = 0 a pair ± iω is hidden
             _, a, b = A.characteristic_polynomial(plant.variable).coefficients(plant.variable)
             is_pair = plant.is_discrete or sign_of(b, signs) not in {"negative", "nonpositive", "zero"}

@@ -228,6 +228,14 @@ def test_signs_that_weights_need_are_conditions() -> None:
     assert [str(each) for each in filtered.conditions] == ["w >= 0", "v > 0"]
 
 
+def test_a_root_on_the_circle_is_excluded_where_its_mirror_image_is_one() -> None:
+    # At a = 1, q = 0 the modes 1 and -1 are hidden from the cost, and c(z) is a polynomial in z^2.
+    result: Any = symobs.lqr(symobs.StateSpace("[0 1; a 0]", "[0; 1]", dt=1), Q="[q 0; 0 0]", R="1")
+    assert "Ne(a**2 - 2*a + q + 1, 0)" in map(str, result.conditions)
+    there = {tuple(map(str, case.when)): case.result for case in result.cases}
+    assert there["Eq(q, 0)", "Eq(a - 1, 0)"].verdict == "no"
+
+
 def test_an_obstacle_is_named() -> None:
     unmoved: Any = symobs.lqr(symobs.StateSpace("[1 0; 0 -1]", "[0; 1]"), Q="1", R="1")
     unseen: Any = symobs.lqr(symobs.StateSpace("[0 1; -4 0]", "[0; 1]"), Q="0", R="1")
