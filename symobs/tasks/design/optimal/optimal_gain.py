@@ -17,6 +17,7 @@ from symobs.exact import (
     Matrix,
     Root,
     Scalar,
+    TooLarge,
     apart_from_zero,
     from_coefficients,
     independent_rows,
@@ -292,8 +293,9 @@ class OptimalGain(Result):
 
         def on(there: StateSpace, values: dict[str, Scalar]) -> Result | None:
             weights = {name: weight.substitute(values) for name, weight in self.weights.items()}
-            there_signs, weight = there.symbols.signs, self.regulator_of(there, weights).uncrossed[2]
-            if there.equations or not is_semidefinite(weight, there_signs):  # ranks and signs are not known there
+            there_signs, regulator = there.symbols.signs, self.regulator_of(there, weights)
+            known = _is_definite(regulator.R, there_signs) and is_semidefinite(regulator.uncrossed[2], there_signs)
+            if there.equations or not known:  # ranks and signs are not known there
                 return None
             found = type(self).of(there, weights, self.method)
             return None if found.answer["question"] is not None else found
@@ -520,8 +522,9 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     if n > (_EXACT_UP_TO if is_numeric(regulator) else MOST_WITH_PARAMETERS):
         raise NoFactor(f"with parameters a closed form is looked for up to order {MOST_WITH_PARAMETERS}")
     H = hamiltonian(regulator)
-    in_parameters = regulator.discrete and not is_numeric(regulator)
-    factors = stable_factors(H.characteristic_polynomial(variable), variable, signs, whole=in_parameters)
+    in_parameters = not is_numeric(regulator)
+    whole = regulator.discrete and in_parameters
+    factors = stable_factors(H.characteristic_polynomial(variable), variable, signs, whole=whole)
     if sum(factor.degree(variable) for factor in factors) != n:
         raise NoFactor("the polynomial has roots on the boundary")
     product = Matrix.identity(2 * n)
@@ -529,7 +532,10 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
         product = _normal(product @ polynomial_of(factor, variable, H))
     left, right = product.select(range(2 * n), range(n, 2 * n)), product.select(range(2 * n), range(n))
     relations = identities(factors)[1]
-    P, _ = solve_or_refute(left, -right, Ideal.of(relations) if relations else None)
+    try:
+        P, _ = solve_or_refute(left, -right, Ideal.of(relations) if relations else None)
+    except TooLarge as error:
+        raise NoFactor("its closed form is too long") from error
     if P is None:
         raise NoFactor("the polynomial has roots on the boundary")
     P = _normal(P)
@@ -539,7 +545,10 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     loop = (A - B @ gain).characteristic_polynomial(variable)
     polynomial = from_coefficients([reduced(c) for c in loop.coefficients(variable)], variable)
     if in_parameters:  # 1 − π = 2σ/(1 + σ) is seen to be positive, and it would not with the root in the numerator
-        polynomial = to_disc(product_of(factors), variable, reduce=False)
+        polynomial = product_of(factors)
+        polynomial = to_disc(polynomial, variable, reduce=False) if regulator.discrete else polynomial
+        if stability(polynomial, variable, with_signs(signs, polynomial), discrete=regulator.discrete).verdict != "yes":
+            raise NoFactor("the declared signs do not show that the loop is stable")
     if max(entry.size for entry in (*P.entries, *gain.entries)) > _MOST_TERMS and is_numeric(regulator):
         raise NoFactor("its closed form is too long")
     signs = with_signs(signs, P, gain, polynomial)

@@ -309,6 +309,13 @@ def test_what_no_square_roots_write_is_undecided_with_parameters() -> None:
     assert result.at(a=0).verdict == "yes"
 
 
+def test_what_is_too_long_is_undecided_and_the_factors_show_that_the_loop_is_stable() -> None:
+    long: Any = symobs.lqr(symobs.StateSpace("[a 1; 0 c]", "[b; 1]", dt=1), Q="[q 0; 0 g]", R="r")
+    assert (long.verdict, long.question) == ("undecided", "its closed form is too long")
+    seen: Any = symobs.lqr(symobs.StateSpace("[b 0; b a]", "[1 1; 1 0]"), Q="[q 0; 0 0]", R="r")
+    assert seen.verdict == "conditional"
+
+
 def test_a_scalar_in_discrete_time_with_four_parameters() -> None:
     result: Any = symobs.lqr(symobs.StateSpace("[a]", "[b]", dt=1, symbols=SIGNS), Q="q", R="r")
     assert [str(condition) for condition in result.conditions] == ["Ne(a, 0)"]
