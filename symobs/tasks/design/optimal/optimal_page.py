@@ -41,7 +41,7 @@ def write_optimal(page: Builder, result: OptimalGain) -> None:
     """Write the whole page."""
     _admit_roots(page, result)
     if not is_numeric(result.regulator):
-        inner_first = sorted(all_roots(*_values(result)), key=lambda root: (root.argument.size, root.name))
+        inner_first = sorted(all_roots(*_values(result)), key=lambda root: (len(all_roots(root.argument)), root.name))
         page.name_roots(*(root.value for root in inner_first))
     given(page)
     with page.section("optimal_feedback" if result.letter == "K" else "optimal_filter"):
