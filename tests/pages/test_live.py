@@ -718,7 +718,7 @@ def test_the_region_is_drawn_for_the_value_of_another_letter(opened: Callable[..
 
 def test_a_case_is_set_exactly(opened: Callable[..., Opened]) -> None:
     live = opened(CASES)
-    live.page.click("""[data-case='{"c":"1"}']""")
+    live.page.get_by_role("button", name="c = 1", exact=True).click()
     live.at_rest()
     assert live.page.get_attribute(".cards .verdict", "data-verdict") == "no"
     assert live.latex("kernel") == r"N=\begin{bmatrix}-1\\1\end{bmatrix}"
@@ -856,13 +856,40 @@ def test_a_link_opens_the_same_and_back_undoes(opened: Callable[..., Opened]) ->
     assert live.poles("observer_poles") == "-5+5/2i, -5-5/2i"
 
 
-@pytest.mark.parametrize("state", [f"{PAIR}&language=de", CASES, REGION], ids=["poles", "cases", "region"])
+#: What is wider than its place, and cannot be scrolled by the keyboard.
+_OUT_OF_REACH = (
+    "[...document.querySelectorAll('.display')].filter(e => e.scrollWidth > e.clientWidth && e.tabIndex < 0)"
+)
+
+
+def test_margins_follow_the_poles(opened: Callable[..., Opened]) -> None:
+    live = opened(f"{SERVO}&closed=page&goal=phase:45,overshoot:10&step=1")
+    met = live.page.locator("b.met")
+    # independent numbers of F = (319 s + 400)/(s² + 23 s + 161) and of F = (1751 s + 4100)/(4 s² + 92 s + 669)
+    assert "11.1723, phase margin ≈ 67.798235°" in live.page.inner_text(".loop")
+    assert live.page.locator(".loop path.curve").count() == 4
+    live.page.fill('[data-set="control_poles"]', "-2+5/2j, -2-5/2j")
+    live.page.press('[data-set="control_poles"]', "Tab")
+    live.at_rest()
+    assert "phase margin ≈ 46.741191°" in live.page.inner_text(".loop")
+    assert met.evaluate_all("all => all.map(e => e.dataset.met)") == ["false", "true"]  # 24 % with the zero of F
+    live.page.get_by_role("button", name="Close Frequency response").click()
+    assert "closed=page,loop" in unquote(live.page.url)
+
+
+@pytest.mark.parametrize(
+    "state",
+    [f"{PAIR}&language=de", CASES, REGION, f"{SERVO}&closed=none&goal=phase:45,gain:100"],
+    ids=["poles", "cases", "region", "loop"],
+)
 @tabled
 def test_nothing_overflows(opened: Callable[..., Opened], state: str, width: int, scheme: str) -> None:
     live = opened(state, color_scheme=scheme)
     live.page.set_viewport_size({"width": width, "height": 800})
     live.page.wait_for_timeout(200)
     assert live.page.evaluate("document.documentElement.scrollWidth") <= width
+    live.wait_for("document.querySelector('.html math')")
+    live.wait_for(f"!({_OUT_OF_REACH}).length")
     live.page.emulate_media(media="print")
     assert len(set(live.page.screenshot())) > 200
     live.page.emulate_media(media="screen", forced_colors="active")

@@ -371,6 +371,7 @@ export function mount(element, transport, options = {}) {
     if (held || gone) return;
     restTimer = setTimeout(async () => {
       announce();
+      reachable();
       if (!start) learn();
       if (!open("page") || running || isOld("answer")) return;
       aborted.abort();
@@ -385,7 +386,13 @@ export function mount(element, transport, options = {}) {
       if (got.html) el.html.innerHTML = got.html;
       else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), ...(got.status === "undecided" ? [h("button", { onclick: () => rest(0) }, w("try_again"))] : []));
       el.page.setAttribute("aria-busy", "false");
+      reachable();
     }, after);
+  }
+
+  /** Let the keyboard reach formulas that are wider than their place, to scroll them. */
+  function reachable() {
+    for (const each of root.querySelectorAll(".display")) if (each.scrollWidth > each.clientWidth) each.setAttribute("tabindex", "0"); else each.removeAttribute("tabindex");
   }
 
   function announce() {
@@ -1047,7 +1054,9 @@ export function mount(element, transport, options = {}) {
     const made = got.cases.map((c) => {
       const usable = Object.keys(c.at).length > 0;
       const b = h("button", { disabled: !usable, "data-case": JSON.stringify(c.at), onclick: () => { s.at = { ...c.at }; problemChanged(); } });
-      b.innerHTML = (c.mathml.length ? c.mathml : c.when.map((w) => w.mathml)).join(" ");
+      const said = usable ? Object.entries(c.at).map((pair) => pair.join(" = ")) : c.when.map((each) => each.text);
+      b.innerHTML = `<span aria-hidden="true">${(c.mathml.length ? c.mathml : c.when.map((w) => w.mathml)).join(" ")}</span>`;
+      b.append(h("span", { class: "hidden" }, said.join(", ")));
       return h("div", { class: "case-row" }, b, h("span", { class: "pale" }, c.rank !== undefined ? w("rank", c) : w(`case_${c.verdict}`)));
     });
     el.casesBody.replaceChildren(...(made.length ? [general, ...made] : [h("p", { class: "pale" }, w(Object.keys(s.symbols).length ? "no_values" : "no_letters"))]));
@@ -1104,9 +1113,11 @@ export function mount(element, transport, options = {}) {
     e.preventDefault();
     walk(e.shiftKey ? 1 : -1);
   });
+  const resized = new ResizeObserver(() => reachable());
+  resized.observe(root);
   begin();
   return {
-    destroy() { gone = true; aborted.abort(); root.remove(); },
+    destroy() { gone = true; resized.disconnect(); aborted.abort(); root.remove(); },
     state: () => encoded(s),
     /** Take over a state that is written already: of the history of the browser, or of another view. */
     set(link) {
