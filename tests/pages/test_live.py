@@ -761,6 +761,19 @@ def test_the_verdict_of_a_point_changes_on_the_boundary(opened: Callable[..., Op
     assert live.page.get_attribute(verdict, "data-verdict") == "stable"
 
 
+def test_the_point_stands_where_its_fields_say_after_undo(opened: Callable[..., Opened]) -> None:
+    live = opened(REGION)
+    field, dot = live.page.locator('.point [data-where="at.h2"]'), live.page.locator(".pick")
+    for value in ("2", ""):
+        before = field.input_value(), dot.get_attribute("transform")
+        field.fill(value)
+        field.press("Tab")
+        live.at_rest()
+        live.page.get_by_role("button", name="Undo").click()
+        live.at_rest()
+        assert (field.input_value(), dot.get_attribute("transform")) == before
+
+
 def test_a_point_that_cannot_be_read_is_said_at_its_field(opened: Callable[..., Opened]) -> None:
     live = opened(f"{REGION}&language=de")
     field = live.page.locator('.point [data-where="at.h1"]')
