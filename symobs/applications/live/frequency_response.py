@@ -39,13 +39,12 @@ def _coefficients(result: Result) -> tuple[list[Fraction], list[Fraction]] | Non
         return None
     try:
         found = (result.answer["closed"], result.answer["opened"]) if isinstance(result, Margins) else loop_of(result)
-        return (
-            None
-            if None in found or found[0] == found[1]
-            else tuple(list(numbers(part, plant.variable)) for part in found)
-        )
+        if None in found or found[0] == found[1]:
+            return None
+        above, below = (list(numbers(part, plant.variable)) for part in found)
     except (InputError, NotRational):
         return None
+    return above, below
 
 
 def phase_margin(result: Result) -> str | None:
@@ -84,10 +83,10 @@ def _curves(above: list[Fraction], below: list[Fraction], *, discrete: bool) -> 
     closed, opened = (fmpz_poly(part[::-1]) for part in (whole[: len(above)], whole[len(above) :]))
     moved = closed - opened
     with Precision(_BITS):
-        factors = [(root, power) for root, power in moved.complex_roots()]
-        factors += [(root, -power) for root, power in opened.complex_roots()]
+        zeros, poles, roots = (_roots(polynomial) for polynomial in (moved, opened, closed))
+        factors = [*zeros, *((root, -power) for root, power in poles)]
         gain = (acb(moved[moved.degree()]) / acb(opened[opened.degree()])).log()
-        low, high = _frequencies([root for root, _ in [*factors, *closed.complex_roots()]], discrete=discrete)
+        low, high = _frequencies([root for root, _ in [*factors, *roots]], discrete=discrete)
         values = []
         for k in range(_POINTS + 1):
             frequency = arb(min(high, low * (high / low) ** (k / _POINTS)))
@@ -108,6 +107,11 @@ def _curves(above: list[Fraction], below: list[Fraction], *, discrete: bool) -> 
         "reach": f"{min(max(reach, _LEAST), _MOST):.3g}",
         "parts": _PARTS,
     }
+
+
+def _roots(polynomial: fmpz_poly) -> list[tuple[acb, int]]:
+    found: Any = polynomial.complex_roots()
+    return list(found)
 
 
 def _frequencies(roots: list[Any], *, discrete: bool) -> tuple[float, float]:

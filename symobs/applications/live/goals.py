@@ -47,12 +47,8 @@ def goals_of(
             most = max((100 * exp(pi * float(re / abs(im))) if re < 0 else inf for re, im in placed if im), default=0.0)
             line = {"slope": f"{pi / log(100 / limit):.6g}"} if limit < 100 else {}
             found["overshoot"] = {"met": _within(most, float(limit)), "value": _digits(most), **line}
-        for name, key in (("settling", "settles"), ("overshoot", "overshoot")) if after_step is not None else ():
-            if name in found:
-                told = [line.get(key, "0" if key == "overshoot" and "peak" in line else "") for line in after_step]
-                most = max(map(float, told)) if all(told) else None
-                met = None if most is None else _within(most, float(limits[name]), _ROUNDED)
-                found[name] |= {"met": met, "value": "" if most is None else _digits(most)}
+        for name in found if after_step is not None else ():
+            found[name] |= _after_step(name, after_step or (), float(limits[name]))
     if (limit := limits.get("gain")) is not None:
         entries = [entry for name in result.gains for entry in _entries(result.fields.get(name))]
         signs = [
@@ -65,6 +61,16 @@ def goals_of(
         value = inf if margin == INFINITE else float(margin)
         found["phase"] = {"met": value == inf or _within(float(limit), value), "value": _digits(value)}
     return found
+
+
+def _after_step(name: str, lines: Sequence[Mapping[str, Any]], limit: float) -> dict[str, Any]:
+    """Return whether the outputs settle in time, or do not overshoot too far, and how far; None where it is not read off."""
+    key, least = ("settles", "") if name == "settling" else ("overshoot", "0")
+    told = [line.get(key, least if "peak" in line else "") for line in lines]
+    if not all(told):
+        return {"met": None, "value": ""}
+    most = max(map(float, told))
+    return {"met": _within(most, limit, _ROUNDED), "value": _digits(most)}
 
 
 def _positive(text: str, name: str) -> Fraction:

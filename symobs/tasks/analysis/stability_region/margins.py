@@ -57,8 +57,8 @@ def gains_of(
     if closed == opened:
         return RealNumber.of(0), INFINITE
     variable, k, moved = Scalar.symbol("z" if dt else "s"), Scalar.symbol("k"), Scalar.of(0)
-    for one, other in zip(closed, opened, strict=True):
-        moved = moved * variable + Scalar.of(other) + k * Scalar.of(one - other)
+    for whole, part in zip(closed, opened, strict=True):
+        moved = moved * variable + Scalar.of(part) + k * Scalar.of(whole - part)
     region: Any = stability_region(moved, symbols={"k": "positive"}, dt=dt, parameters="k")
     one = RealNumber.of(1)
     for piece in region.region.intervals:

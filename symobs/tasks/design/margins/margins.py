@@ -129,7 +129,8 @@ class Margins(Result):
             how = "every interval by the roots at a point of it"
             ends = answer["gain_down"], answer["gain_up"]
             yield Statement(
-                "the ends of the gains around 1", lambda: how if gains_of(*self._coefficients, plant.dt) == ends else ""
+                "the ends of the gains around 1",
+                lambda: how if gains_of(self._coefficients[0], self._coefficients[1], plant.dt) == ends else "",
             )
             yield Statement("angle, distance and peak", lambda: "interval arithmetic" if self._are_certain else "")
 
