@@ -18,7 +18,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
-from scipy.signal import step as step_response
+from scipy.signal import step as step_response  # type: ignore[import-untyped]
 
 from symobs.applications.live import answer
 from symobs.applications.live.assets import MOST_BYTES
