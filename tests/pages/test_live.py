@@ -772,6 +772,14 @@ def test_the_point_stands_where_its_fields_say_after_undo(opened: Callable[..., 
         live.page.get_by_role("button", name="Undo").click()
         live.at_rest()
         assert (field.input_value(), dot.get_attribute("transform")) == before
+    live.context.set_offline(offline=True)
+    field.fill("3")
+    field.press("Tab")
+    live.page.wait_for_selector(".message:not([hidden])")
+    live.page.get_by_role("button", name="Undo").click()
+    live.wait_for("document.querySelector('.point:not(.old) > .verdict')?.textContent.includes('h2 = 1')")
+    live.context.set_offline(offline=False)
+    live.complaints.clear()
 
 
 def test_a_point_that_cannot_be_read_is_said_at_its_field(opened: Callable[..., Opened]) -> None:

@@ -1107,7 +1107,14 @@ export function mount(element, transport, options = {}) {
   // -- begin ------------------------------------------------------------------------------------------------------------
 
   const isEmpty = () => !Object.keys(s.plant).length && s.spec.polynomial === undefined;
-  const begin = () => { build(); if (view?.panels.includes("region") && signature() === viewed) drawMap(); if (isEmpty()) turn(s.task); else ask(); };
+  const begin = () => {
+    build();
+    if (view?.panels.includes("region") && signature() === viewed) {
+      drawMap();
+      if (point && !isOld("point")) drawPoint(point, answered.point);
+    }
+    if (isEmpty()) turn(s.task); else ask();
+  };
   root.addEventListener("keydown", (e) => {
     if (!(e.ctrlKey || e.metaKey) || e.key.toLowerCase() !== "z" || /** @type {HTMLElement} */ (e.target).closest("input")) return;
     e.preventDefault();
