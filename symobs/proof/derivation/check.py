@@ -244,7 +244,7 @@ def _about_letters(formula: Formula, environment: Environment) -> None:
 
 
 def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
-    """Verify a relation or a property; a property without conditions must hold whatever named coefficients stand for."""
+    """Verify a relation or a property; what holds whatever named coefficients stand for is seen first."""
     if isinstance(fact, Relation):
         for member in fact.members:
             _established(member, environment)
@@ -261,9 +261,9 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
     if isinstance(fact, Evaluated):
         _fact(Relation((fact.formula, fact.value), ("=",)), environment, discrete)
         return
-    if not isinstance(fact, HoldsExactlyWhere):
-        environment = replace(environment, coefficients={})
+    free = replace(environment, coefficients={}) if environment.coefficients else environment
     if isinstance(fact, Roots):
+        environment = free
         _about_letters(fact.polynomial, environment)
         value = as_scalar(evaluate(fact.polynomial, environment, Exact(environment)))
         polynomial = polynomial_of(value, environment)
@@ -286,10 +286,16 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
             )
         return
     _about_letters(fact.subject, environment)
+    if not any(
+        _has_property(fact, here, discrete) for here in ([free] if free is environment else [free, environment])
+    ):
+        reject(f"{fact.name}({evaluate(fact.subject, environment, Exact(environment))})")
+
+
+def _has_property(fact: Predicate, environment: Environment, discrete: bool) -> bool:  # noqa: FBT001
     found = evaluate(fact.subject, environment, Exact(environment))
     parts = subjects(fact.name, found, environment.variable)
-    if not all(PREDICATES[fact.name](part, environment, discrete) for part in parts):
-        reject(f"{fact.name}({found})")
+    return all(PREDICATES[fact.name](part, environment, discrete) for part in parts)
 
 
 def _introduce(relation: Relation, environment: Environment) -> Environment:
