@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 PAGES = [
     "index", "start", "how_to", "web_pages", "live", "believe", "sheets", "checking", "exporting", "values_and_programs",
+    "other_programs",
     "tutorials/engineer", "tutorials/lecturer", "tutorials/student",
 ]  # fmt: skip
 #: They need more than their lines.
