@@ -420,7 +420,7 @@ def _answer(asked: Request) -> dict[str, Any]:
             there.result,
             ((re, im) for _, re, im in _placed(there)),
             asked.goal,
-            responses["lines"] if responses and responses["step"] else None,
+            responses["lines"] if responses and responses["step"] else (),
         ),
     }
     if asked.loop != "none":

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 _BITS, _PARTS, _POINTS = 128, 1000, 160
 #: The plane of Nyquist shows at least and at most so far from 0; ends of the gain have so many digits after the point.
 _LEAST, _MOST, _DIGITS, _SHORT = 1.2, 2.0, 4, 9
+#: Loops whose coefficients are farther from 1, to a power of their count, have no curves in floating point.
+_FARTHEST = 10**30
 
 
 def shows_loop(result: Result) -> bool:
@@ -44,7 +46,8 @@ def _coefficients(result: Result) -> tuple[list[Fraction], list[Fraction]] | Non
         above, below = (list(numbers(part, plant.variable)) for part in found)
     except (InputError, NotRational):
         return None
-    return above, below
+    within = all(not x or _FARTHEST ** -len(above) < abs(x) < _FARTHEST ** len(above) for x in (*above, *below))
+    return (above, below) if within else None
 
 
 def phase_margin(result: Result) -> str | None:

@@ -29,7 +29,7 @@ def goals_of(
     result: Result,
     poles: Iterable[tuple[Fraction, Fraction]],
     asked: Mapping[str, str],
-    after_step: Sequence[Mapping[str, Any]] | None = None,
+    after_step: Sequence[Mapping[str, Any]] = (),
 ) -> dict[str, dict[str, Any]]:
     """Return for each goal whether it is met (None: undecided), the value there, and the line in the plane.
 
@@ -44,13 +44,14 @@ def goals_of(
             value = log(50) / slowest if slowest > 0 else inf
             found["settling"] = {"met": _within(value, float(limit)), "value": _digits(value), "re": f"{-needed:.6g}"}
         if (limit := limits.get("overshoot")) is not None:
-            most = max((100 * exp(pi * float(re / abs(im))) if re < 0 else inf for re, im in placed if im), default=0.0)
+            pairs = (100 * exp(pi * float(re / abs(im))) for re, im in placed if im)
+            most = max(pairs, default=0.0) if slowest > 0 else inf
             line = {"slope": f"{pi / log(100 / limit):.6g}"} if limit < 100 else {}
             found["overshoot"] = {"met": _within(most, float(limit)), "value": _digits(most), **line}
-        for name in found if after_step is not None else ():
-            found[name] |= _after_step(name, after_step or (), float(limits[name]))
+        for name in found if after_step and slowest > 0 else ():  # where a mode grows no step response settles
+            found[name] |= _after_step(name, after_step, float(limits[name]))
     if (limit := limits.get("gain")) is not None:
-        entries = [entry for name in result.gains for entry in _entries(result.fields.get(name))]
+        entries = [entry for name in result.gains or "KL" for entry in _entries(result.fields.get(name))]
         signs = [
             sign_of_number(side) if not side.is_zero else "zero" for e in entries for side in (limit - e, limit + e)
         ]
@@ -60,17 +61,19 @@ def goals_of(
     if (limit := limits.get("phase")) is not None and (margin := phase_margin(result)) is not None:
         value = inf if margin == INFINITE else float(margin)
         found["phase"] = {"met": value == inf or _within(float(limit), value), "value": _digits(value)}
-    return found
+    return {name: found.get(name, {"met": None, "value": ""}) for name in limits}
 
 
 def _after_step(name: str, lines: Sequence[Mapping[str, Any]], limit: float) -> dict[str, Any]:
-    """Return whether the outputs settle in time, or do not overshoot too far, and how far; None where it is not read off."""
-    key, least = ("settles", "") if name == "settling" else ("overshoot", "0")
-    told = [line.get(key, least if "peak" in line else "") for line in lines]
-    if not all(told):
-        return {"met": None, "value": ""}
-    most = max(map(float, told))
-    return {"met": _within(most, limit, _ROUNDED), "value": _digits(most)}
+    """Return whether the outputs settle in time, or do not overshoot too far, and how far; None where it is not read off.
+
+    What a response overshoots by is known where it has settled, and where its peak is on the side of its final value.
+    """
+    key = "settles" if name == "settling" else "overshoot"
+    if not all("settles" in line and key in line for line in lines):
+        return {"met": None, "value": "", "of": "step"}
+    most = max(float(line[key]) for line in lines)
+    return {"met": _within(most, limit, _ROUNDED), "value": _digits(most), "of": "step"}
 
 
 def _positive(text: str, name: str) -> Fraction:

@@ -355,8 +355,9 @@ def _read_off(
     largest = _peak(distance, is_continuous=is_continuous) if final else peak
     if largest is None:
         return found
-    if final and (percent := 100 * (peak / final - 1)) >= _LEAST_PERCENT:
-        found["overshoot"] = _digits(Fraction(percent), 3)
+    if final and peak / final > 0:
+        percent = 100 * (peak / final - 1)
+        found["overshoot"] = _digits(Fraction(percent), 3) if percent >= _LEAST_PERCENT else "0"
     band = int(_SETTLED * abs(largest)) - 1
     if _last_above(band, [value - final for value in after] if final else after, is_continuous=is_continuous):
         return found
@@ -412,7 +413,7 @@ def readout(real: Fraction, imaginary: Fraction, *, discrete: bool) -> dict[str,
     root = _root(square)
     whole = f"{square}" if square.denominator == 1 else f"({square})"
     found = {"exact": f"ωₙ = {root}" if root * root == square else f"ωₙ = √{whole}"}
-    if square:
+    if root:
         found["damping"] = _places(-real / root)
     if real < 0:
         if imaginary and (percent := 100 * exp(pi * float(real / abs(imaginary)))) >= _LEAST_PERCENT:

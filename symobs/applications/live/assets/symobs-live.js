@@ -654,7 +654,7 @@ export function mount(element, transport, options = {}) {
     drawPlane(true);
   }
 
-  const goalName = (name) => w(`goal_${isStep() && /^[so]/.test(name) ? `${name}_after_step` : name}`);
+  const goalName = (name) => w(`goal_${answer?.goal?.[name]?.of ? `${name}_after_step` : name}`);
   const MET = { true: "✓", false: "✗" };
 
   /** Say above the plane which goals are met. */
@@ -1078,7 +1078,7 @@ export function mount(element, transport, options = {}) {
       const kind = `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`;
       made.push(h("svg:path", { class: kind, d: pathOf(line.heights, place) }));
       if (all.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
-      const settles = [line.overshoot ? w("overshoots", { percent: pretty(line.overshoot) }) : "", line.settles ? w("settles", { time: pretty(line.settles) }) : "", line.signal === "u" && line.peak ? w("peak", { peak: pretty(line.peak) }) : ""].filter(Boolean).join(", ");
+      const settles = [Number(line.overshoot) ? w("overshoots", { percent: pretty(line.overshoot) }) : "", line.settles ? w("settles", { time: pretty(line.settles) }) : "", line.signal === "u" && line.peak ? w("peak", { peak: pretty(line.peak) }) : ""].filter(Boolean).join(", ");
       if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(line.last) })}${settles && `, ${settles}`}`);
       named.push(h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
     }

@@ -107,7 +107,7 @@ PHRASES: dict[str, str] = {
     "live_magnitude": "Magnitude of the loop over the frequency, in dB",
     "live_phase": "Phase of the loop over the frequency, in degrees",
     "live_locus": "Locus of the loop (Nyquist), dashed for negative frequencies",
-    "live_no_loop": "The frequency response needs numbers without roots.",
+    "live_no_loop": "No frequency response is drawn of this answer: that needs one loop, of numbers without roots, and a gain that is not 0.",
     "live_met": "met",
     "live_missed": "missed",
     "live_open": "undecided",

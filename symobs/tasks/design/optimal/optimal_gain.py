@@ -45,7 +45,7 @@ from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stabl
 from symobs.tasks.result import Case, Result, choose, equality
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from symobs.exact.floating.riccati import Enclosure
     from symobs.exact.floating.riccati_check import Regulator
@@ -59,7 +59,7 @@ MOST_STATES, MOST_WITH_PARAMETERS = 12, 2
 #: With more states no exact solution is looked for.
 _EXACT_UP_TO = 6
 #: An exact solution whose entries have more terms says less than its digits.
-_MOST_TERMS = 60
+_MOST_TERMS, _MOST_TERMS_WITH_PARAMETERS = 60, 40
 
 
 class Obstacle(NamedTuple):
@@ -305,7 +305,30 @@ class OptimalGain(Result):
             if condition.kind != "domain":
                 each = real_consequences(condition.expression, self.plant.symbols.signs)
                 asked += common_places(self.plant, each) if each else places(self.plant, [condition.expression])
-        return solved(self.plant, {frozenset(place.when): place for place in asked}.values(), on)
+        found = solved(self.plant, {frozenset(place.when): place for place in asked}.values(), on)
+        return tuple(self._with_roots_beside(found))
+
+    def _with_roots_beside(self, cases: Iterable[Case]) -> Iterator[Case]:
+        """Yield the cases; those whose square roots are too many to be decided beside the others are undecided."""
+        beside = self.all_values
+        for case in cases:
+            more = [] if case.result is None else case.result.values_with_cases
+            if more and not _are_decidable([*beside, *more]):
+                yield replace(case, result=None)
+                continue
+            beside = [*beside, *more]
+            yield case
+
+    @property
+    def all_values(self) -> list[Scalar | Matrix]:
+        """The data, the exact answers, and the factors of the polynomial."""
+        return [*self.values().values(), *(self.answer["factors"] or ())]
+
+    @cached_property
+    def values_with_cases(self) -> list[Scalar | Matrix]:
+        """These, and those of the cases."""
+        inner = (case.result for case in self.case_tree if case.result is not None)
+        return [*self.all_values, *(value for found in inner for value in found.values_with_cases)]
 
     @property
     def hidden_modes(self) -> tuple[Root, ...]:
@@ -549,12 +572,18 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
         polynomial = to_disc(polynomial, variable, reduce=False) if regulator.discrete else polynomial
         if stability(polynomial, variable, with_signs(signs, polynomial), discrete=regulator.discrete).verdict != "yes":
             raise NoFactor("the declared signs do not show that the loop is stable")
-    if max(entry.size for entry in (*P.entries, *gain.entries)) > _MOST_TERMS and is_numeric(regulator):
+    most = _MOST_TERMS if is_numeric(regulator) else _MOST_TERMS_WITH_PARAMETERS
+    if max(entry.size for entry in (*P.entries, *gain.entries)) > most or not _are_decidable([P, gain, *factors]):
         raise NoFactor("its closed form is too long")
-    signs = with_signs(signs, P, gain, polynomial)
-    if stability(polynomial, variable, signs, discrete=regulator.discrete).verdict != "yes":
-        raise NoFactor("the signs of the square roots do not show that the loop is stable")
     return Solution(P, gain, polynomial, factors)
+
+
+def _are_decidable(values: Iterable[Scalar | Matrix]) -> bool:
+    """Return whether it can be decided what vanishes where the square roots of some values are what they are."""
+    try:
+        return not Ideal.where(identities(values)[1]).is_whole
+    except TooLarge:
+        return False
 
 
 def _normal(matrix: Matrix) -> Matrix:

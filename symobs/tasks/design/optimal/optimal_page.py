@@ -22,7 +22,7 @@ from symobs.tasks.design.optimal.optimal_gain import is_numeric
 from symobs.tasks.design.optimal.spectral_factor import with_signs
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Mapping
 
     from symobs.formula.tree.term import Term
     from symobs.proof.derivation.builder import Builder
@@ -41,7 +41,7 @@ def write_optimal(page: Builder, result: OptimalGain) -> None:
     """Write the whole page."""
     _admit_roots(page, result)
     if not is_numeric(result.regulator):
-        inner_first = sorted(all_roots(*_values(result)), key=lambda root: (len(all_roots(root.argument)), root.name))
+        inner_first = sorted(all_roots(*result.all_values), key=lambda root: (len(all_roots(root.argument)), root.name))
         page.name_roots(*(root.value for root in inner_first))
     given(page)
     with page.section("optimal_feedback" if result.letter == "K" else "optimal_filter"):
@@ -58,23 +58,12 @@ def _case(page: Builder, result: OptimalGain) -> None:
 
 def _admit_roots(page: Builder, result: OptimalGain) -> None:
     """Let the square roots of the answer have their relations and their sign from the start."""
-    values = [value for each in _with_cases(result) for value in _values(each)]
+    values = result.values_with_cases
     page.with_roots(*values)
     signs, open_ones = with_signs(page.start.signs, *values), _open_radicands(page, values)
     page.start, page.environment = (
         replace(each, signs=signs, positive=(*each.positive, *open_ones)) for each in (page.start, page.environment)
     )
-
-
-def _with_cases(result: OptimalGain) -> Iterator[OptimalGain]:
-    yield result
-    for case in result.case_tree:
-        if case.result is not None:
-            yield from _with_cases(case.result)  # type: ignore[arg-type]  # of the same task
-
-
-def _values(result: OptimalGain) -> list[Scalar | Matrix]:
-    return [*result.values().values(), *(result.answer["factors"] or ())]
 
 
 def _open_radicands(page: Builder, values: Iterable[Scalar | Matrix]) -> list[Scalar]:

@@ -392,3 +392,14 @@ def test_a_case_whose_loop_is_not_seen_to_be_stable_is_undecided() -> None:
     plant = symobs.StateSpace("[-1 b; -a 0]", "[a+1 a+1; -1 -1]", symbols={"a": "real", "b": "real"})
     (case,) = symobs.lqr(plant, Q="1", R="1").case_tree
     assert case.result is None
+
+
+def test_a_page_is_written_where_the_roots_of_a_case_are_too_many_beside_the_others() -> None:
+    signs = {"a": "positive", "b": "negative", "c": "real", "q": "positive"}
+    plant = symobs.StateSpace("[-c 3; -1 -1]", "[b; -a]", symbols=signs)
+    found = symobs.lqr(plant, Q="[1 0; 0 q]", R="1")
+    assert [case.result for case in found.case_tree] == [None]
+    assert "stabilizing solution" in found.to("text")
+    long = symobs.lqr(symobs.StateSpace("[a 1; 0 c]", "[0; 1]", dt=True, symbols=signs), Q="1", R="q")
+    assert (long.verdict, long.K) == ("undecided", None)
+    assert "too long" in long.question
