@@ -1082,7 +1082,7 @@ export function mount(element, transport, options = {}) {
       if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(line.last) })}${settles && `, ${settles}`}`);
       named.push(h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
     }
-    if (told.length) svg.setAttribute("aria-label", w("up_to", { end: all.end, told: told.join("; ") }));
+    if (all.end) svg.setAttribute("aria-label", told.length ? w("up_to", { end: all.end, told: told.join("; ") }) : w(svg === el.effort ? "effort" : "responses"));
     svg.replaceChildren(...made);
     legend.replaceChildren(...named);
   }
