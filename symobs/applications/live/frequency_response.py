@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from math import ceil, floor, log10, pi
+from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Any
-
-from flint import acb, arb, fmpz_poly
 
 from symobs.exact import RealNumber
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
-from symobs.exact.algebraic.root_location import integers
-from symobs.exact.core.ring import Precision
+from symobs.exact.floating.loop_on_boundary import loop_on_boundary
 from symobs.ground.errors import InputError
 from symobs.tasks.analysis.stability_region.margins import NotRational, gains_of, numbers
 from symobs.tasks.design.margins.margins import Margins, has_loop, loop_of
@@ -22,7 +19,7 @@ if TYPE_CHECKING:
     from symobs.formula.phrases.languages import Language
     from symobs.tasks.result import Result
 
-_BITS, _PARTS, _POINTS = 128, 1000, 160
+_PARTS, _POINTS = 1000, 160
 #: The plane of Nyquist shows at least and at most so far from 0; ends of the gain have so many digits after the point.
 _LEAST, _MOST, _DIGITS, _SHORT = 1.2, 2.0, 4, 9
 #: Loops whose coefficients are farther from 1, to a power of their count, have no curves in floating point.
@@ -81,60 +78,17 @@ def _end(value: RealNumber | str) -> str:
 
 
 def _curves(above: list[Fraction], below: list[Fraction], *, discrete: bool) -> dict[str, Any]:
-    """Return the loop on the boundary of stability; the phase is a sum over zeros and poles, so that it has no jumps."""
-    whole = integers([*above, *below])
-    closed, opened = (fmpz_poly(part[::-1]) for part in (whole[: len(above)], whole[len(above) :]))
-    moved = closed - opened
-    with Precision(_BITS):
-        zeros, poles, roots = (_roots(polynomial) for polynomial in (moved, opened, closed))
-        factors = [*zeros, *((root, -power) for root, power in poles)]
-        gain = (acb(moved[moved.degree()]) / acb(opened[opened.degree()])).log()
-        low, high = _frequencies([root for root, _ in [*factors, *roots]], discrete=discrete)
-        values = []
-        for k in range(_POINTS + 1):
-            frequency = arb(min(high, low * (high / low) ** (k / _POINTS)))
-            turned = acb(0, frequency)
-            logarithm = gain + sum(
-                (power * _logarithm(turned, root, discrete=discrete) for root, power in factors), acb(0)
-            )
-            values.append((logarithm, logarithm.exp()))
-        magnitude = [_whole(20 * logarithm.real / arb(10).log()) for logarithm, _ in values]
-        phase = [_whole(180 * logarithm.imag / arb.pi()) for logarithm, _ in values]
-        locus = [[_whole(value.real), _whole(value.imag)] for _, value in values]
-    reach = max((abs(part) for point in locus for part in point if part is not None), default=0) / _PARTS
-    ends = [str(log10(low)), str(log10(high))]
+    """Return the loop on the boundary of stability in whole parts, with windows."""
+    found = loop_on_boundary(above, below, _POINTS, _PARTS, discrete=discrete)
+    reach = max((abs(part) for point in found.locus for part in point if part is not None), default=0) / _PARTS
+    ends = [str(log10(end)) for end in found.frequencies]
     return {
-        "magnitude": _picture(magnitude, ends, "dB", 20),
-        "phase": _picture(phase, ends, "°", 45),
-        "locus": [[None if p is None or abs(p) > 2 * _MOST * _PARTS else p for p in point] for point in locus],
+        "magnitude": _picture(found.magnitude, ends, "dB", 20),
+        "phase": _picture(found.phase, ends, "°", 45),
+        "locus": [[None if p is None or abs(p) > 2 * _MOST * _PARTS else p for p in point] for point in found.locus],
         "reach": f"{min(max(reach, _LEAST), _MOST):.3g}",
         "parts": _PARTS,
     }
-
-
-def _roots(polynomial: fmpz_poly) -> list[tuple[acb, int]]:
-    found: Any = polynomial.complex_roots()
-    return list(found)
-
-
-def _frequencies(roots: list[Any], *, discrete: bool) -> tuple[float, float]:
-    """Return decades around the moduli of the roots; in discrete time angles up to π."""
-    sizes = [size for root in roots if (size := float(abs(root - 1 if discrete else root).mid())) > 1e-9] or [1.0]
-    low = 10.0 ** floor(log10(min(sizes) / 3))
-    return (min(low, 0.1), pi) if discrete else (low, 10.0 ** ceil(log10(max(sizes) * 3)))
-
-
-def _logarithm(turned: acb, root: acb, *, discrete: bool) -> acb:
-    """Return log(s − r) on a branch that is continuous along the boundary, `turned` is log s in discrete time, else s."""
-    if discrete:
-        s = turned.exp()
-        return turned + (1 - root / s).log() if bool(abs(root) <= 1) else (-root).log() + (1 - s / root).log()
-    return (root - turned).log() + acb(0, arb.pi()) if bool(root.real > 0) else (turned - root).log()
-
-
-def _whole(value: arb) -> int | None:
-    """Return a number in parts; None where it is not finite or not known so well."""
-    return round(float(value.mid()) * _PARTS) if value.is_finite() and float(value.rad()) < 1 / _PARTS else None
 
 
 def _picture(heights: list[int | None], ends: list[str], signal: str, unit: int) -> dict[str, Any]:
