@@ -265,7 +265,7 @@ def test_goals_are_held_against_poles_and_gains() -> None:
     assert float(told["overshoot"]["value"]) == pytest.approx(100 * (max(heights) - 1), abs=6e-3)
     assert float(told["settling"]["value"]) == pytest.approx(late, rel=0.01)
     # where a mode grows nothing settles, and where the peak is an undershoot or the final value 0 nothing is read off
-    double = {"task": "feedforward", "plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[1 0]"}}
+    double: dict[str, Any] = {"task": "feedforward", "plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[1 0]"}}
     lag = {"A": "[0 1; -1 -1]", "B": "[0; 1]", "C": "[0 1]"}
     for plant, poles, expected in (
         (double["plant"], "-1/10+12i, -1/10-12i", None),
