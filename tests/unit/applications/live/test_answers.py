@@ -267,18 +267,18 @@ def test_goals_are_held_against_poles_and_gains() -> None:
     # where a mode grows nothing settles, and where the peak is an undershoot or the final value 0 nothing is read off
     double: dict[str, Any] = {"task": "feedforward", "plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[1 0]"}}
     lag = {"A": "[0 1; -1 -1]", "B": "[0; 1]", "C": "[0 1]"}
-    for plant, poles, expected in (
+    for plant, placed, outcome in (
         (double["plant"], "-1/10+12i, -1/10-12i", None),
         (double["plant"], "1/10+3i, 1/10-3i", False),
         (double["plant"], "1, -2", False),
         (double["plant"] | {"C": "[-1/5 1]"}, "-1/2+3i, -1/2-3i", None),
         (lag, "-1+5i, -1-5i", None),
     ):
-        problem = {**double, "plant": plant, "specification": {"control_poles": poles}}
+        problem = {**double, "plant": plant, "specification": {"control_poles": placed}}
         if plant is lag:
-            problem |= {"task": "compensator", "specification": {"control_poles": poles, "observer_poles": "-3, -4"}}
+            problem |= {"task": "compensator", "specification": {"control_poles": placed, "observer_poles": "-3, -4"}}
         told = asked(problem, goal={"overshoot": "10", "phase": "30"}, courses={"step": True})["goal"]
-        assert told["overshoot"]["met"] is expected
+        assert told["overshoot"]["met"] is outcome
         assert told["phase"].keys() >= {"met", "value"}
     for wrong, where in (({"gain": "0"}, "goal.gain"), ({"gain": 1}, "goal"), ({"speed": "1"}, "goal")):
         assert asked(SERVO, goal=wrong)["errors"][0]["where"] == where
