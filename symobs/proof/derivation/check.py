@@ -261,7 +261,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
     if isinstance(fact, Evaluated):
         _fact(Relation((fact.formula, fact.value), ("=",)), environment, discrete)
         return
-    free = replace(environment, coefficients={}) if environment.coefficients else environment
+    free = replace(environment, coefficients={})
     if isinstance(fact, Roots):
         environment = free
         _about_letters(fact.polynomial, environment)
@@ -286,9 +286,7 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
             )
         return
     _about_letters(fact.subject, environment)
-    if not any(
-        _has_property(fact, here, discrete) for here in ([free] if free is environment else [free, environment])
-    ):
+    if not any(_has_property(fact, here, discrete) for here in (free, environment)):
         reject(f"{fact.name}({evaluate(fact.subject, environment, Exact(environment))})")
 
 

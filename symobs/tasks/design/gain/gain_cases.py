@@ -48,24 +48,13 @@ def cases_of_gain(design: GainDesign) -> tuple[Case, ...]:
 
 def cases_of(design: GainDesign, desired: DesiredPolynomial) -> tuple[Case, ...]:
     """Return the design on every stratum where its modes, its gain or whether there is one are others than in general."""
-    plant, letter = design.plant, design.letter
 
     def solve(there: StateSpace, values: dict[str, Scalar]) -> GainDesign:
-        found = design_of(
-            type(design), there, desired.substitute(values), design.method, design.zero, decoupled=design.decoupled
-        )
-        own = design.answer[letter]
-        if own is None or found.answer[letter] is None:
-            return found
-        try:  # the gain of the main line, where it is still there
-            kept = own.substitute(values)
-        except ZeroDivisionError:
-            return found
-        if kept == found.answer[letter] or not there.admits(kept):
-            return found
-        return found.with_answer(letter, kept)
+        asked = desired.substitute(values)
+        found = design_of(type(design), there, asked, design.method, design.zero, decoupled=design.decoupled)
+        return found.with_gains_of(design, values)
 
-    return solved(plant, places_where(design), solve)
+    return solved(design.plant, places_where(design), solve)
 
 
 def places_where(design: GainDesign) -> tuple[Place, ...]:
