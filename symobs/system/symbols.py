@@ -142,11 +142,17 @@ def _require_parameter(symbol: Any, name: str, sign: str | None, place: str) -> 
 
 def _sign(entry: object, place: str) -> str:
     if entry not in SIGNS:
-        raise InputError(f"{str(entry)[:40]!r} is not a sign", where=place, repair=f"write one of {', '.join(SIGNS)}")
+        sign, repair = place.rpartition(".")[2], f"write one of {', '.join(SIGNS)}"
+        if sign in SIGNS and isinstance(entry, list) and 0 < len(entry) <= _FEW:
+            repair = "write " + ", ".join(f'{str(name)[:20]} = "{sign}"' for name in entry)
+        raise InputError(f"{str(entry)[:40]!r} is not a sign", where=place, repair=repair)
     return str(entry)
 
 
 _LATEX_LIMIT = 40
+
+#: Names that a repair repeats.
+_FEW = 8
 
 
 def _latex(entry: object, place: str) -> str:

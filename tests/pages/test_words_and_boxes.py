@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import symobs
 from symobs import StateSpace, characteristic_polynomial, decomposition, detectability, gramian, observability
 from tests.kit import tabled, text_of
 
@@ -40,3 +41,31 @@ def test_the_boxes_of_a_case_are_as_few_as_those_of_a_section() -> None:
     generic, case = decomposition(plant).to_latex().split("Case ", 1)
     assert generic.count(r"\answer{") == 1
     assert case.count(r"\answer{") == 1
+
+
+@tabled
+def test_the_roots_that_a_given_gain_leaves(K: str, roots: str) -> None:
+    page = text_of(symobs.state_feedback(symobs.StateSpace("[0 1 0; 0 0 1; -2 -3 1]", B="[0; 0; 1]"), K=K))
+    assert f"Its {roots}. " in page
+
+
+def test_no_member_of_a_chain_is_printed_twice() -> None:
+    page = text_of(symobs.observer(symobs.StateSpace("[1]", C="[1]"), poles=[-2]))
+    assert "V_o⁻¹ = 3," in page
+
+
+def test_no_fraction_in_the_numerator_of_a_loop() -> None:
+    cart = symobs.StateSpace(
+        "[0 1 0 0; 0 0 -m*g/M 0; 0 0 0 1; 0 0 (M+m)*g/(l*M) 0]", B="[0; 1/M; 0; -1/(M*l)]", C="[1 0 0 0]"
+    )
+    page = symobs.compensator(cart, control_poles=[-1] * 4, observer_poles=[-2] * 4).to_latex()
+    assert r"\frac{(ls^2-g)\det(sI-A_{\mathrm c})}{lM\varphi" in page
+
+
+@tabled
+def test_a_loop_that_no_gain_places_is_told_whatever_is_repeated(poles: str, observer: str) -> None:
+    plant = symobs.StateSpace("[1 0; 0 2]", B="[1; 0]", C="[1 1]")
+    of_observer = "-3, -4" if observer == "full" else "-3"
+    design = symobs.compensator(plant, control_poles=poles, observer_poles=of_observer, observer=observer)
+    assert design.K is None
+    assert "2 is not among the desired poles" in text_of(design)

@@ -385,6 +385,7 @@ class Layout(Generic[B]):
 
     def rows(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """Return the rows, and whether they are aligned (else each is centred)."""
+        relations = [self._without_repetition(relation) for relation in relations]
         if self.boxed and all({"=", "≈"}.isdisjoint(relation.operators) for relation in relations):
             return self._inequalities(relations)
         last = len(relations) - 1
@@ -399,6 +400,17 @@ class Layout(Generic[B]):
             rows += self._aligned(relation, margin, is_last=index == last)
         self.breaker.settle()
         return rows, True
+
+    def _without_repetition(self, relation: Relation) -> Relation:
+        """Return a relation without members that are printed as the one before them: 3 · 1 beside 3."""
+        boxes = [replace(self._typeset(member), level=Level.SUM) for member in relation.members]
+        members, operators = relation.members, relation.operators
+        kept = [i for i in range(len(members)) if i < 2 or operators[i - 1] != "=" or boxes[i] != boxes[i - 1]]
+        return replace(
+            relation,
+            members=tuple(members[i] for i in kept),
+            operators=tuple(operators[i - 1] for i in kept[1:]),
+        )
 
     def _inequalities(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """Return the rows of an answer that is inequalities: one frame around all of them where they fit."""

@@ -681,9 +681,10 @@ def _is_of_loop(said: Said, name: str) -> bool:
 
 
 def _is_shown(said: Said) -> bool:
-    """Return whether the properties are of a polynomial that was displayed, or spoken of, last before."""
+    """Return whether the properties, or roots, are of a polynomial that was displayed, or spoken of, last before."""
     last = [member for fact in said.environment.shown if isinstance(fact, Relation) for member in fact.members]
-    return bool(said.subjects()) and all(subject in last for subject in said.subjects())
+    about = [*said.subjects(), *(told.polynomial for told in said.of(Roots))]
+    return bool(about) and all(subject in last for subject in about)
 
 
 def _is_test(said: Said, row: str, of: str) -> bool:

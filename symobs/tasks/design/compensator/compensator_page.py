@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 def caution_repeated(page: Builder, design: OutputFeedback) -> None:
     """Warn of a repeated control pole that is defective: its exponential alone does not bound x."""
     plant = design.plant
-    desired = design.feedback.desired
+    desired = design.feedback.desired if page.defines("K") else None
     if desired is None or plant.symbols.signs or not desired.is_numeric or plant.inputs > 1:
         return
     for factor, power in desired.grouped():
@@ -505,7 +505,8 @@ def named_return_path(page: Builder, design: OutputFeedback, own: Term) -> None:
     _plant(page, design)
     numerator, _ = design.plant_transfer
     definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
-    product = page.value(numerator) @ own / (page["phi_c"] @ page["phi_o"])
+    above, below = (page.value(part) for part in (numerator.numerator, numerator.denominator))
+    product = above @ own / (below @ page["phi_c"] @ page["phi_o"])
     page.define("G_cl", definition, product, say="return_path", answer=True, closing=False)
     page.conclude(f"loop_polynomial{of_given(design)}")
     draw_loop(page, page["P"], page["F"])

@@ -532,6 +532,9 @@ def _given_gain(page: Builder, design: GainDesign, side: PlacementProblem, *, of
         page.define(side.phi, *members, say="its_polynomial", answer=True)
     else:
         page.equal(relation(*members), say="its_polynomial", answer=True)
+    roots = roots_of(polynomial, page.plant.variable)
+    if polynomial.names <= {page.plant.variable} and all(root.is_closed for root in roots):
+        page.conclude("roots_found", roots=Roots(members[0].formula, roots))
     say_stability(page, side.error_determinant(page))
 
 
