@@ -358,6 +358,11 @@ def test_slides_of_one_problem_begin_with_their_title(tmp_path: Path, require_to
     assert pages > 3
 
 
+def test_a_figure_a_sentence_and_references_are_two_slides(tmp_path: Path, require_tool: RequireTool) -> None:
+    run = inside("solve", str(ROOT / "worked_examples" / "margins_compensator.toml"), "--format", "beamer")
+    assert typeset(run.out, tmp_path, require_tool("pdflatex"))[0] == []
+
+
 def test_a_problem_told_in_words_begins_the_first_slide(folder: Path) -> None:
     text = (
         'title = "T"\ntext = "Two states, one seen."\ntask = "observability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'

@@ -137,6 +137,8 @@ class _SlideWriter(LatexWriter):
         self.printer.keep_time(heading.time)
         parts = [body]
         while len(parts[0]) > 1 and _is_no_slide(*parts[0][-2:]):
+            if len(parts) > 1 and isinstance(parts[0][-2], _UNBROKEN):
+                break  # a figure leaves room for one of them
             parts[:1] = [parts[0][:-1], parts[0][-1:]]
         written = _KEPT.join(map(self.body, parts)).replace(_INSET + _KEPT, rf"{_UNPARTED} {_INSET}{_KEPT}")
         return {"title": self.sentence(heading.inlines).removesuffix("."), "body": written}
