@@ -69,3 +69,10 @@ def test_a_loop_that_no_gain_places_is_told_whatever_is_repeated(poles: str, obs
     design = symobs.compensator(plant, control_poles=poles, observer_poles=of_observer, observer=observer)
     assert design.K is None
     assert "2 is not among the desired poles" in text_of(design)
+
+
+def test_a_kernel_everywhere_beside_a_sum_that_exists_in_cases() -> None:
+    plant = symobs.StateSpace("[-a -a a; -a a 1; 1 a 1]", C="[a 0 0]", dt=True)
+    page = text_of(symobs.gramian(plant, horizon="inf"))
+    assert "among the symmetric solutions it is the one with W N = [0; 0; 0]" in page
+    assert page.count("have the same kernel") == 1  # where a = 0

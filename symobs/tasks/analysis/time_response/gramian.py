@@ -565,14 +565,14 @@ def _tell_nonsingular(key: str, name: str, result: Gramian, page: Builder, known
 def _tell_kernel(result: Gramian, page: Builder) -> None:
     """Write the kernel of the finite sum with its vector, or that there is none."""
     M, kernel = page["M"], result.answer["rank"]["kernel"]
+    is_elsewhere = result.plant.is_discrete and not page.defines("W")  # what W is is told in cases
     if not kernel.shape[1]:
         key = "kernel_none_controllability" if result.answer["of"] == "controllability" else "kernel_none"
         is_somewhere = result.answer["horizon"] == INFINITE and bool(result.decay.positive)
-        is_elsewhere = result.plant.is_discrete and not page.defines("W")  # it is told in cases
         key = "kernel_none_of_sum" if result.answer["matrix"] is None or is_somewhere or is_elsewhere else key
         _tell_nonsingular(key, "M", result, page)
         return
-    if result.answer["matrix"] is None or result.answer["of"] == "controllability":
+    if result.answer["matrix"] is None or result.answer["of"] == "controllability" or is_elsewhere:
         return
     several = kernel.shape[1] > 1
     v = page["N"] if several and page.defines("N") else page.set("N" if several else "v", kernel)
