@@ -249,6 +249,7 @@ MARKING = table(
         "follow_through": number(most=1).about("the credit of a part that is right from an earlier wrong one"),
         "guard": FLAG.about("no such credit where the wrong one makes the part easy"),
         "credit": by_name(number(most=1), _slip).about("the credit of a part by its slip"),
+        "by_entry": FLAG.about("whether a wrong matrix is credited with the share of its right entries"),
         "decimals": one_of("exact", "accept").about("whether a rounded value is right"),
         "digits": whole(1, 15, "a whole number from 1 to 15 is expected", "write {key} = 3").about(
             "the significant digits to which a rounded gain, or the poles that it places, are to be right"
@@ -277,6 +278,7 @@ class Marking:
     follow_through: Fraction = Fraction(1)
     guard: bool = True
     credit: Mapping[str, Fraction] = field(default_factory=lambda: dict(CREDIT))
+    by_entry: bool = False
     decimals: str = "exact"
     digits: int | None = None
     sign_of_F: str = "convention"  # noqa: N815 - the key of the file

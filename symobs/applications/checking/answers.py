@@ -30,7 +30,7 @@ from symobs.problem.expect import factored_table
 # Definitions as students write them: NAME = value, chains of equal values, several of them on a line.
 
 
-_NAME = r"[ \t]*([A-Za-z][A-Za-z0-9_.]*)((?:[ \t]*\([szt]\))?)[ \t]*(?::=|==?)(?![=<>])"
+_NAME = r"[ \t]*([A-Za-zΑ-Ωα-ω][A-Za-z0-9_.]*)((?:[ \t]*\([szt]\))?)[ \t]*(?::=|==?)(?![=<>])"
 
 
 #: What gives a letter its value, or a function of s, z or t: F(s) = 1/s.
@@ -67,12 +67,17 @@ def definition(line: str) -> Definition | None:
         return None
     name, argument, right = found.groups()
     said = right.partition(" where ")[0]
-    members = [said] if _IS_INEQUALITY.search(said) else [member.strip() for member in _apart(_EQUALS, said)]
+    members = [said] if _IS_INEQUALITY.search(said) else [_exactly(member) for member in _apart(_EQUALS, said)]
     if len(members) > 1 and members[-1] == "0":
         members.pop()
         return Definition(name, argument, members[-1], is_chain=True)
     # behind a last "=" nothing stands: the whole cannot be read, and takes the place of what was written before
     return Definition(name, argument, members[-1] or right, is_chain=len(members) > 1 or said != right)
+
+
+def _exactly(member: str) -> str:
+    """Return a member of a chain without its decimals, 1/3 ≈ 0.333, and the comma behind it."""
+    return (member.partition("≈")[0].strip() or member.strip()).rstrip(", ")
 
 
 def value_of(letter: str, text: str) -> str:
@@ -289,6 +294,10 @@ _REMARK = re.compile(r"[#%]")
 _RELATION = re.compile(r"[=<>]|!=")
 
 
+#: What begins a case, whose answers do not replace those of the main line, and what ends it.
+_CASE, _SECTION = re.compile(r"(?:Case|Fall)\b"), re.compile(r"\d+\. ")
+
+
 #: Several numbers in a row, and the bar of a quotient, as MATLAB displays them below a name.
 _NUMBERS, _BAR = re.compile(r"[-+]?[\d.][\d.eE/+-]*(?:\s+[-+]?[\d.][\d.eE/+-]*)+"), re.compile(r"-{3,}")
 
@@ -349,8 +358,10 @@ def _of_lines(text: str, where: str) -> Answer:
     steps: list[Step] = []
     conditions: list[str] = []
     errors: list[SymobsError] = []
+    in_case = False
     for number, line in kept:
         place = f"line {number}"
+        in_case = bool(_CASE.match(line)) or (in_case and not _SECTION.match(line))
         defined = definition(line)
         if not defined:
             steps.append(Step(line, place))
@@ -368,8 +379,9 @@ def _of_lines(text: str, where: str) -> Answer:
             continue
         value = as_value(defined.value)
         task, _, name = defined.name.rpartition(".")
-        if value:
-            (values.setdefault(task, {}) if task else values)[name] = value
+        table = values.setdefault(task, {}) if task else values
+        if value and not (in_case and name in table):
+            table[name] = value
         if not task and isinstance(value, str) and _is_relation(name, value):
             steps.append(Step(line if defined.is_chain else f"{name}{defined.argument} = {value}", place))
     if errors and len(errors) == len(kept):
@@ -402,7 +414,7 @@ def _lines(text: str, where: str) -> list[tuple[int, str]]:
         if is_open == 0:
             line = "\n".join([line, *(part for _, part in written[:below])])
             del written[:below]
-        while written and written[0][1].startswith("="):  # a chain goes on
+        while written and written[0][1].startswith(("=", "≈", "·")):  # a chain goes on
             line = f"{line} {written.pop(0)[1]}"
         found += [(number, part.strip()) for part in statements(line)]
     _at_most(len(found), where)

@@ -168,6 +168,8 @@ def _explained(
     other = _exchanged(view, judgement, judged)
     slips = [fault.slip for fault in found.alternatives] or [found.slip or ""]
     credit = min(marking.credit.get(slip, Fraction(0)) for slip in slips)
+    if marking.by_entry:
+        credit = max(credit, _share_of_entries(view, judgement, judged))
     said = other or found.reason or part.reason
     if not said and "polynomial" in found.effect:
         said = f"with your {judged.letter} the polynomial is {found.effect['polynomial']}, not the one asked for"
@@ -182,6 +184,17 @@ def _explained(
         effect=found.effect,
         credit=credit,
     )
+
+
+def _share_of_entries(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> Fraction:
+    """Return the share of the right entries of a wrong matrix, zeros that are right apart; 0 where many would be right."""
+    right = _exact(judgement.right.fields.get(judged.name))
+    mine = judged.value
+    is_one = judged.name not in view.result.in_coordinates and judgement.right.fields.get("family") is None
+    if not is_one or not isinstance(mine, Matrix) or not isinstance(right, Matrix) or mine.shape != right.shape:
+        return Fraction(0)
+    pairs = [(a, b) for a, b in zip(mine.entries, right.entries, strict=True) if not (a.is_zero and b.is_zero)]
+    return Fraction(sum(a == b for a, b in pairs), len(pairs))
 
 
 def _exchanged(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> str:

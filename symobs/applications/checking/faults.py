@@ -462,7 +462,7 @@ def _entry(mine: Matrix, exact: Matrix, letter: str, variable: str) -> Iterator[
     if len(wrong) == 1:
         places = [(i, j) for i in range(exact.shape[0]) for j in range(exact.shape[1]) if mine[i, j] != exact[i, j]]
         (i, j), said = places[0], str(wrong[0])
-        if is_empty_but_for(mine, i, j):  # to tell the entry would be to tell the value
+        if is_empty_but_for(mine, i, j) or variable == "t":  # to tell the entry would be to tell the value
             said = f"entry ({i + 1}, {j + 1}) is wrong"
         yield Fault("entry", said, [i + 1, j + 1])
 

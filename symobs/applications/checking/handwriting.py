@@ -75,6 +75,8 @@ def _rows_of_latex(body: str) -> str:
 
 
 _FRAME = re.compile(r"[┌┐└┘─│]")
+#: The conditions of a region as a page frames them.
+_FRAMED = re.compile(r"\s*│ ([^│⎡⎢⎣=≈]*[<>][^│=≈]*) │\s*")
 _DRAWN = re.compile(r"[⎡⎢⎣]([^⎡⎢⎣⎤⎥⎦]*)[⎤⎥⎦]")
 
 
@@ -85,7 +87,8 @@ def without_drawings(text: str) -> str:
     written: list[str] = []
     block: list[str] = []
     for line in text.splitlines():
-        plain = _FRAME.sub(" ", line)
+        framed = _FRAMED.fullmatch(line)
+        plain = f"stable_if = {framed[1]}" if framed else _FRAME.sub(" ", line)
         if not plain.strip() and line.strip():
             continue
         if not _DRAWN.search(plain):

@@ -402,6 +402,8 @@ def _exercise(path: Path, asked: Sequence[str], points: Fraction | None) -> Exer
     errors = [*_unheld(problem), *marking_errors(replace(problem, marking=replace(marking, milestones=())), views)]
     parts: list[ExportedPart] = []
     wanted = checked.asked(views)
+    if not marking.asked:  # whether the pair is observable is asked beside the rank that shows it
+        wanted = [(view, name) for view, field in wanted for name in (("verdict", field) if field == "rank" else (field,))]
     letters = Counter(field for _, field in wanted)
     for view, field in wanted:
         letter = view.letter_of(field)
@@ -431,6 +433,9 @@ def _unheld(problem: Problem) -> list[SymobsError]:
     if problem.marking.milestones:
         message = "lines of a derivation are marked, and an exported question takes values alone"
         errors.append(InputError(message, where="marking.milestone", repair="leave the milestones out"))
+    if problem.marking.by_entry:
+        message = "an exported grader does not credit entries"
+        errors.append(InputError(message, where="marking.by_entry", repair="leave it out"))
     for slip, credit in problem.marking.credit.items():
         if credit and slip not in SLIPS and slip != "boundary":
             message = f"an exported grader does not find the slip {shown(slip, 40)}"

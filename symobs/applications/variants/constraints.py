@@ -256,6 +256,7 @@ _FLAGS: dict[str, Callable[[StateSpace, Sequence[Result]], bool]] = {
     "controllable": _verdict_of("controllability"),
     "stable_plant": _is_stable,
     "unstable_plant": lambda plant, _: not _is_stable(plant),
+    "stable_compensator": lambda _, results: all(r.fields.get("F_stable", "yes") == "yes" for r in results),
     "minimal_phase": _is_minimal_phase,
     "distinct_poles": lambda plant, _: all(count == 1 for _, count in _boxes(plant)),
     "repeated_poles": lambda plant, _: any(count > 1 for _, count in _boxes(plant)),

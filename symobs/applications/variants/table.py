@@ -76,6 +76,7 @@ CONSTRAINTS = {
     "controllable": FLAG.about("whether the plant is controllable"),
     "stable_plant": FLAG.about("whether all poles of the plant are stable"),
     "unstable_plant": FLAG.about("whether a pole of the plant is not stable"),
+    "stable_compensator": FLAG.about("whether the compensator, F(s), is stable"),
     "minimal_phase": FLAG.about("whether all zeros are stable"),
     "distinct_poles": FLAG.about("whether the poles of the plant are distinct"),
     "repeated_poles": FLAG.about("whether a pole of the plant is repeated"),
