@@ -164,6 +164,8 @@ def _transition(instants: Sequence[Scalar], environment: Environment) -> Matrix:
 
 def _function(name: str, part: SyntaxNode, argument: Matrix, reading: Reading) -> Scalar:
     """Return exp, sin, … of a number: its value in the field, or a generator."""
+    if name == "exp" and argument.shape[0] == argument.shape[1] > 1:
+        raise BudgetExceeded("the exponential of a matrix is not evaluated here", repair="print its entries")
     if argument.shape != (1, 1):
         raise Misfit(f"{part} is {sized(argument.shape)}, but {name} takes a number")
     number = argument[0, 0]
@@ -270,6 +272,8 @@ def common(left: Printed, right: Printed, environment: Environment) -> tuple[Ter
     if not alike(left, right) and (_is_zero(left) or _is_zero(right)):
         return (left, left - left) if _is_zero(right) else (right - right, right)
     if not alike(left, right):
+        if is_signal(left) != is_signal(right) and (shape(left) or (1, 1)) == (shape(right) or (1, 1)):
+            raise InputError("a signal has no value of its own", repair="print an equation between signals")
         raise no_fit(f"the left side {kind_of(left)}, the right side {kind_of(right)}")
     return left, right
 

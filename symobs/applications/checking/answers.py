@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from symobs.applications.checking.handwriting import (
     as_entries,
+    coefficients_of,
     plain_line,
     readable,
     squashed,
@@ -30,7 +31,7 @@ from symobs.problem.expect import factored_table
 # Definitions as students write them: NAME = value, chains of equal values, several of them on a line.
 
 
-_NAME = r"[ \t]*([A-Za-zΑ-Ωα-ω][A-Za-z0-9_.]*)((?:[ \t]*\([szt]\))?)[ \t]*(?::=|==?)(?![=<>])"
+_NAME = r"[ \t]*([A-Za-zΑ-Ωα-ω][A-Za-z0-9_.₀-₉]*)((?:[ \t]*\([szt]\))?)[ \t]*(?::=|==?)(?![=<>])"
 
 
 #: What gives a letter its value, or a function of s, z or t: F(s) = 1/s.
@@ -358,6 +359,7 @@ def _of_lines(text: str, where: str) -> Answer:
     steps: list[Step] = []
     conditions: list[str] = []
     errors: list[SymobsError] = []
+    functions: set[str] = set()
     in_case = False
     for number, line in kept:
         place = f"line {number}"
@@ -371,6 +373,8 @@ def _of_lines(text: str, where: str) -> Answer:
             is_equation = members[-1:] == ["0"] and left.startswith(("det", "|"))  # of the eigenvalues
             if members and members[-1] and not is_equation and not _IS_INEQUALITY.search(line):
                 values |= {squashed(members[-1]): as_value(left), squashed(left): as_value(members[-1])}
+                found = coefficients_of(members)
+                values |= {name: as_value(text) for name, text in found.items() if name not in functions}
             if not _RELATION.search(line):
                 message = f'"{shown(line, 60)}" is no relation'
                 errors.append(InputError(message, where=place, repair="write for example L = [19; 81]"))
@@ -378,6 +382,7 @@ def _of_lines(text: str, where: str) -> Answer:
                 conditions.append(line)
             continue
         value = as_value(defined.value)
+        functions |= {defined.name} if defined.argument else set()
         task, _, name = defined.name.rpartition(".")
         table = values.setdefault(task, {}) if task else values
         if value and not (in_case and name in table):
@@ -414,7 +419,7 @@ def _lines(text: str, where: str) -> list[tuple[int, str]]:
         if is_open == 0:
             line = "\n".join([line, *(part for _, part in written[:below])])
             del written[:below]
-        while written and written[0][1].startswith(("=", "≈", "·")):  # a chain goes on
+        while written and written[0][1].startswith(("=", "≈", "·", "/")):  # a chain goes on
             line = f"{line} {written.pop(0)[1]}"
         found += [(number, part.strip()) for part in statements(line)]
     _at_most(len(found), where)

@@ -14,8 +14,16 @@ from symobs.applications.audit.auditor import printed_entries
 from symobs.applications.checking.answers import Answer, plain, read_answer, states, written_text
 from symobs.applications.checking.derivations import is_of_conditions, judge_lines, judge_milestone
 from symobs.applications.checking.faults import Explained, explain_gain, explain_value, other_values
-from symobs.applications.checking.handwriting import entries_of, fields_of, listed_of
-from symobs.applications.checking.judgement import OF_THE_PLANT, asked_of, exists, field_called, judge_task, rounds
+from symobs.applications.checking.handwriting import entries_of, fields_of, listed_of, with_own_letters
+from symobs.applications.checking.judgement import (
+    OF_THE_PLANT,
+    asked_of,
+    exists,
+    field_called,
+    judge_task,
+    known_names,
+    rounds,
+)
 from symobs.applications.checking.regions import read_conditions
 from symobs.applications.checking.report import SHOW, CheckReport, Line, Part
 from symobs.exact import Factored, Matrix, Scalar
@@ -552,6 +560,8 @@ def _add_called_otherwise(
         for name, entry in (further | entries_of(view, answer.values) | listed_of(view, answer.values)).items():
             if name not in given:
                 found[view.task][name] = entry
+        names, _ = known_names(view)
+        found[view.task] = {name: with_own_letters(v, answer.values, names) for name, v in found[view.task].items()}
 
 
 def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line, ...]:

@@ -80,10 +80,20 @@ _FRAMED = re.compile(r"\s*│ ([^│⎡⎢⎣=≈]*[<>][^│=≈]*) │\s*")
 _DRAWN = re.compile(r"[⎡⎢⎣]([^⎡⎢⎣⎤⎥⎦]*)[⎤⎥⎦]")
 
 
+#: Names of entries and of parts that a page explains below a formula: M(1,2), exp(A t)(1,2), *₁.
+_PLACE = re.compile(r"([A-Za-zα-ωΑ-Ω]\w*(?:\([A-Za-z ]+\))?)\((\d),(\d)\)")
+_ABBREVIATED, _DIGITS = re.compile(r"\*([₁-₉])"), str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
+
+
+def _named(found: re.Match[str]) -> str:
+    return f"{re.sub(r'[^A-Za-z]+', '_', found[1])}_{found[2]}_{found[3]}"
+
+
 def without_drawings(text: str) -> str:
     """Return a text with matrices that stand over several lines on one: ⎡1  2⎤ above ⎣3  4⎦ is [1, 2; 3, 4]."""
     if not re.search("[⎡│]", text):
         return text
+    text = _ABBREVIATED.sub(lambda f: f"part_{f[1].translate(_DIGITS)}", _PLACE.sub(_named, text))
     written: list[str] = []
     block: list[str] = []
     for line in text.splitlines():
@@ -378,6 +388,39 @@ def fields_of(asked: Sequence[tuple[ResultInConvention, str]], values: Mapping[s
             usual[part] = others[0]
     once = {part: value for part, value in usual.items() if sum(value is each for each in usual.values()) == 1}
     return found | once
+
+
+_OWN, _LONGEST = re.compile(r"(?<!\w)[^\W\d_]\w*(?!\w|\()"), 5_000
+_OF_LETTERS = re.compile(r"(?:\+?\s*[A-Z]\w*\s+[zuy]\s*)+")
+
+
+def coefficients_of(members: Sequence[str]) -> dict[str, str]:
+    """Return the values of F, G and H in a chain F z + G u + H y = -2 z + [1 0] u + 3 y."""
+    named = next((member for member in members if _OF_LETTERS.fullmatch(member)), "")
+    letters = {signal: letter for letter, signal in re.findall(r"([A-Z]\w*)\s+([zuy])", named)}
+    terms, depth = [""], 0
+    for c in members[-1]:
+        depth += (c in "([") - (c in ")]")
+        if c in "+-" and not depth and terms[-1].strip():
+            terms.append("")
+        terms[-1] += c
+    found = {}
+    for term in terms:
+        factor, signal = term.strip().removeprefix("+").strip()[:-1].rstrip(" *"), term.strip()[-1:]
+        if signal not in letters or letters[signal] in found:
+            return {}
+        found[letters[signal]] = f"{factor}1" if factor in {"", "-"} else factor
+    return found
+
+
+def with_own_letters(value: Any, values: Mapping[str, Any], known: Collection[str]) -> Any:
+    """Return a value with what the answer says of letters that are not the problem's: k1 in [k1, k2] beside k1 = 3."""
+    for _ in range(_DEEPEST if isinstance(value, str) else 0):
+        own = {n for n in _OWN.findall(value) if isinstance(values.get(n), str) and not {n, n.translate(_DIGITS)} & known}
+        if not own or len(value) > _LONGEST:
+            break
+        value = _OWN.sub(lambda f: f"({values[f[0]]})" if f[0] in own else f[0], value)
+    return value
 
 
 def entries_of(view: ResultInConvention, values: Mapping[str, Any]) -> dict[str, list[Any]]:

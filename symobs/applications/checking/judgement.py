@@ -56,9 +56,9 @@ def as_asked(view: ResultInConvention, letter: str, value: Any) -> Any:
         value = as_value(inside)
     name = view.standard(letter)[0]
     if isinstance(value, str):
-        value = in_letters(value, *_known(view))
+        value = in_letters(value, *known_names(view))
     elif isinstance(value, list):
-        value = [in_letters(entry, *_known(view)) if isinstance(entry, str) else entry for entry in value]
+        value = [in_letters(entry, *known_names(view)) if isinstance(entry, str) else entry for entry in value]
     if is_listed(view, letter):
         value = as_list(without_and(value))
         return value.split(",") if name == "sizes" and isinstance(value, str) else value
@@ -69,7 +69,7 @@ def as_asked(view: ResultInConvention, letter: str, value: Any) -> Any:
     return value if shape is None else in_a_line(with_commas(value, shape[1]), shape)
 
 
-def _known(view: ResultInConvention) -> tuple[set[str], str]:
+def known_names(view: ResultInConvention) -> tuple[set[str], str]:
     """Return the names that an answer may use, and the variable among them."""
     parameters = getattr(getattr(view.result, "question", None), "parameters", ())
     variable = view.argument
