@@ -6,8 +6,10 @@ never the file system), the origin, the token, the size.  All mathematics is don
 
 from __future__ import annotations
 
+import gzip
 import hmac
 import json
+import re
 import secrets
 import select
 import socket
@@ -107,6 +109,14 @@ HOSTS = ("127.0.0.1", "::1", "localhost")
 
 
 _MOST_CONNECTIONS, _MOST_HEADERS, _TIMEOUT, _LINE = 16, 16 * 1024, 10.0, 65537
+
+
+#: What fits into one packet is sent as it is.
+_LEAST_COMPRESSED = 1400
+
+
+#: A header `Accept-Encoding` that takes gzip.
+_GZIP = re.compile(r"(?:^|,)\s*gzip\s*(?:,|$|;\s*q=(?!0(?:\.0*)?\s*(?:,|$)))", re.IGNORECASE)
 
 
 _POLICY = (
@@ -296,6 +306,9 @@ class Handler(BaseHTTPRequestHandler):
         for name, value in _HEADERS.items():
             self.send_header(name, value)
         self.send_header("Content-Type", kind)
+        if len(content) > _LEAST_COMPRESSED and _GZIP.search(self.headers.get("Accept-Encoding", "")):
+            content = gzip.compress(content)
+            self.send_header("Content-Encoding", "gzip")
         self.send_header("Content-Length", str(len(content)))
         if self.close_connection:
             self.send_header("Connection", "close")

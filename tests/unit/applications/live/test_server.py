@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import os
 import signal
@@ -129,6 +130,35 @@ def test_only_the_files_of_the_page_are_there(server: Server) -> None:
         status, headers, found = sent(server, request(server, f"GET {path} HTTP/1.1", b""))
         assert (status, headers["content-type"], found) == (200, kind, content)
     assert set(routes()) == {"/", "/symobs-live.js", "/start-http.js", "/live.css"}
+
+
+def test_no_other_page_can_frame_it(server: Server) -> None:
+    for line in ("GET / HTTP/1.1", "GET /elsewhere HTTP/1.1"):
+        policy = sent(server, request(server, line, b""))[1]["content-security-policy"]
+        assert "frame-ancestors 'none'" in policy.split("; ")
+
+
+@pytest.mark.parametrize("accepted", ["gzip", "deflate, GZIP;q=0.5 , br"])
+def test_what_is_long_is_compressed(server: Server, accepted: str) -> None:
+    derivation = json.dumps(json.loads(QUESTION) | {"want": "page"}).encode()
+    status, headers, content = sent(server, request(server, body=derivation, Accept_Encoding=accepted))
+    whole = gzip.decompress(content)
+    assert (status, headers["content-encoding"]) == (200, "gzip")
+    assert json.loads(whole)["html"].endswith("</div>\n")
+    assert len(whole) > 5 * len(content)
+
+
+@pytest.mark.parametrize("accepted", [None, "", "br, deflate", "gzip;q=0", "gzip;q=0.0, br", "xgzip"])
+def test_it_is_sent_as_it_is_to_who_does_not_take_that(server: Server, accepted: str | None) -> None:
+    _, headers, content = sent(server, request(server, "GET /live.css HTTP/1.1", b"", Accept_Encoding=accepted))
+    assert "content-encoding" not in headers
+    assert content == routes()["/live.css"][1]
+
+
+def test_what_is_short_is_sent_as_it_is(server: Server) -> None:
+    _, headers, content = sent(server, request(server, "GET / HTTP/1.1", b"", Accept_Encoding="gzip"))
+    assert "content-encoding" not in headers
+    assert content == routes()["/"][1]
 
 
 def test_what_is_no_request_of_the_protocol_is_an_answer(server: Server) -> None:
