@@ -572,13 +572,17 @@ def test_another_task_takes_over_what_it_is_asked(opened: Callable[..., Opened])
     assert live.latex("K") == r"K=\begin{bmatrix}2&2\end{bmatrix}"
 
 
-def test_every_task_of_the_menu_begins_with_an_answer(opened: Callable[..., Opened]) -> None:
-    live = opened("")
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_every_task_of_the_menu_begins_with_an_answer(opened: Callable[..., Opened], language: str) -> None:
+    live = opened(f"language={language}")
     live.page.wait_for_selector("datalist option", state="attached")
-    for task in live.page.eval_on_selector_all('[aria-label="Task"] option', "all => all.map(e => e.value)"):
-        live.page.get_by_label("Task").select_option(task)
+    menu = live.page.locator(".bar select").first
+    for task in menu.locator("option").evaluate_all("all => all.map(e => e.value)"):
+        menu.select_option(task)
         live.wait_for(f"document.querySelector('.symobs-live:not(.stale):not(.busy)')?.dataset.task === '{task}'")
-        assert live.page.inner_text(".cards .verdict"), task
+        said = live.page.inner_text(".cards .verdict")
+        assert said, task
+        assert language == "en" or not ENGLISH_WORDS.search(said), task
         assert not live.page.is_visible(".message"), task
         assert live.page.locator(".wrong:not(:empty)").count() == 0, task
 
@@ -592,7 +596,7 @@ def act(page: Any, draw: random.Random, examples: list[str]) -> None:
             field.fill(draw.choice(texts))
             field.press("Tab")
 
-    match draw.randrange(11):
+    match draw.randrange(12):
         case 0:
             name = draw.choice(examples)
             for _ in range(draw.randint(1, 2)):  # chosen a second time, it begins anew
@@ -602,10 +606,16 @@ def act(page: Any, draw: random.Random, examples: list[str]) -> None:
             tasks.select_option(draw.choice(tasks.locator("option").evaluate_all("all => all.map(e => e.value)")))
         case 10:
             page.locator(".bar select").nth(1).select_option(draw.choice(["en", "de"]))
+        case 11 if (movable := page.locator(":is([data-where^='give.'], [data-where^='move.']):visible")).count():
+            one = movable.nth(draw.randrange(movable.count()))
+            if one.get_attribute("type") != "range":
+                one.click()
+            else:
+                one.press(draw.choice(["ArrowLeft", "End", "PageUp"]))
         case 2 | 3:
             type_into("[data-set]", ["-3, -4", "-1/2, -7", "-2+j2, -2-j2", "1, 1", "nonsense", "-1", "-sqrt(2), -3"])
         case 4:
-            type_into("[data-where^='plant.']", ["0", "1", "-2", "1/2", "-1", "3", "(", "sqrt(3)"])
+            type_into("[data-where^='plant.'], [data-where^='specification.K'], [data-where^='specification.L']", ["0", "1", "-2", "1/2", "-1", "3", "(", "sqrt(3)"])
         case 5:
             type_into(
                 "[data-where^='at.'], [data-where^='goal.'], [data-where^='courses.']", ["2", "1/2", "1, 1", "", "x"]
@@ -727,6 +737,51 @@ def test_a_case_is_set_exactly(opened: Callable[..., Opened]) -> None:
     live.page.click("text=in general")
     live.at_rest()
     assert live.page.get_attribute(".cards .verdict", "data-verdict") == "conditional"
+
+
+def test_a_gain_is_moved_and_its_poles_follow(opened: Callable[..., Opened]) -> None:
+    live = opened("v=1&task=state_feedback&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&poles=-2, -3")
+    live.page.get_by_role("button", name="move K").click()
+    live.page.wait_for_url("**&K=*")
+    live.at_rest()
+    assert "poles" not in problem_of(live.page.url)[0]["specification"]
+    assert live.page.locator(".plane .handle").count() == 0
+    entry = live.page.locator('[data-where="move.specification.K[1,1]"]')
+    for _ in range(20):
+        entry.press("ArrowLeft")  # a twentieth each
+    live.at_rest()
+    # s² + (1 + k₂) s + k₁ for K = (5, 4): −5/2 ± i √5/2
+    assert problem_of(live.page.url)[0]["specification"] == {"K": "[5 4]"}
+    assert live.latex("polynomial") == r"\chi_{A-BK}(s)=s^2+5s+5"
+    assert live.page.locator(".plane path.mark.control_pole").count() == 2
+    field = live.page.locator('[data-where="specification.K[1,1]"]')
+    field.fill("-60")  # farther than the slider went
+    field.press("Tab")
+    live.page.wait_for_selector('[data-verdict="unstable"]')
+    assert live.page.get_attribute('[data-where="move.specification.K[1,1]"]', "min") == "-200"
+    live.page.get_by_role("button", name="poles for K").click()
+    live.page.wait_for_url("**&poles=*")
+    live.at_rest()
+    assert live.page.locator(".plane .handle").count() == 2
+
+
+def test_a_derivation_begins_as_an_outline_whose_parts_open(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    parts = live.page.locator(".html details")
+    assert parts.locator("summary").all_inner_texts() == [
+        "Given", "1. State feedback", "2. Observer", "3. Compensator", "4. Closed loop",
+    ]  # fmt: skip
+    assert live.page.locator(".html .display:visible").count() == 0
+    parts.nth(1).locator("summary").click()
+    shown = live.page.locator(".html .display:visible").count()
+    assert shown == parts.nth(1).locator(".display").count() > 0
+    live.page.locator('[data-set="control_poles"]').fill("-2, -5")
+    live.page.locator('[data-set="control_poles"]').press("Tab")
+    live.at_rest()
+    live.page.wait_for_selector(".page:not(.old)")
+    assert parts.evaluate_all("all => all.map(e => e.open)") == [False, True, False, False, False]
+    live.page.emulate_media(media="print")
+    assert live.page.locator(".html .display:visible").count() == live.page.locator(".html .display").count() > shown
 
 
 def test_a_letter_has_a_slider(opened: Callable[..., Opened]) -> None:

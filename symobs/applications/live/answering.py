@@ -18,7 +18,7 @@ from symobs.applications.live.page import export_object, page_object
 from symobs.applications.live.request import FieldError, Request, link_of, put_in, read
 from symobs.applications.live.sentences import sentence, stability_of
 from symobs.applications.live.time_responses import NoResponse, has_step, readout, responses_of
-from symobs.exact import Scalar
+from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.algebraic.root_location import complex_roots, root_boxes, value_at
 from symobs.exact.time_functions.matrix_exponential import fraction_near
@@ -52,6 +52,7 @@ from symobs.tasks.result.output_methods import to_json
 if TYPE_CHECKING:
     from symobs.formula.phrases.languages import Language
     from symobs.problem import Problem
+    from symobs.system import StateSpace
     from symobs.tasks.result import Case, Result
 
 
@@ -197,16 +198,17 @@ def _near(value: Fraction, interval: tuple[Fraction, Fraction]) -> str:
 
 @dataclass
 class PoleSet:
-    """Poles that can be moved: the key of the specification, the word for one of them, and their mark."""
+    """Poles that can be moved: the key of the specification, the word for one of them, their mark, and their gain."""
 
     key: str
     label: str
     mark: str
+    gain: str
 
 
 _SETS = (
-    PoleSet("control_poles", "control_pole", "cross"),
-    PoleSet("observer_poles", "observer_pole", "ring"),
+    PoleSet("control_poles", "control_pole", "cross", "K"),
+    PoleSet("observer_poles", "observer_pole", "ring", "L"),
 )
 
 
@@ -223,11 +225,18 @@ def pole_sets(task: str) -> tuple[PoleSet, ...]:
 
 def view_object(result: Result, specification: Any) -> dict[str, Any]:
     """Return what the front-end builds a task from."""
-    plant = result.plant
+    plant, takes = result.plant, kinds_of(tasks()[result.task])
+    moved = [found for found in pole_sets(result.task) if not _gives_polynomial(specification, found.key)]
+    given = [found.gain for found in moved if found.gain in specification]
     sets = [
-        {"key": _key_in(specification, found.key), "label": found.label, "mark": found.mark}
-        for found in pole_sets(result.task)
-        if not _gives_polynomial(specification, found.key)
+        {
+            "key": _key_in(specification, found.key),
+            "label": found.label,
+            "mark": found.mark,
+            "gain": found.gain if found.gain in takes and _is_whole(result.fields.get(found.gain), plant) else "",
+        }
+        for found in moved
+        if found.gain not in given
     ]
     return {
         "task": result.task,
@@ -235,10 +244,16 @@ def view_object(result: Result, specification: Any) -> dict[str, Any]:
         "order": plant.order,
         "panels": [*result.panels, *["loop"] * shows_loop(result), "cards", "page"],
         "sets": sets,
+        "given": given,
         "cards": list(result.cards or result.letters),
         "gains": list(result.gains),
         "step": has_step(result),
     }
+
+
+def _is_whole(gain: Any, plant: StateSpace) -> bool:
+    """Return whether a gain may be given, too: that of an observer of minimal order depends on its coordinates."""
+    return isinstance(gain, Matrix) and plant.order in gain.shape
 
 
 def _key_in(specification: Any, key: str) -> str:
@@ -412,13 +427,16 @@ def _answer(asked: Request) -> dict[str, Any]:
         "conditions": [_condition(found, printer) for found in result.holds_where],
         "cards": [card_object(card, printer) for card in found],
         "readouts": _readouts(there),
-        "marks": _marks(there.result),
+        "marks": _marks(there),
         "says": sentence(result, stable, printer),
         "unstable": [str(pole) for pole in stable.poles] if result.gains and result.verdict != "no" else [],
         "courses": responses,
         "goal": goals_of(
             there.result,
-            ((re, im) for _, re, im in _placed(there)),
+            [
+                *((re, im) for _, re, im in _placed(there)),
+                *(pole for _, matrix in _loops_of_given_gains(there) for pole in _eigenvalues(matrix)),
+            ],
             asked.goal,
             responses["lines"] if responses and responses["step"] else (),
         ),
@@ -548,22 +566,37 @@ def _readouts(solved: Solved) -> list[dict[str, str]]:
     return [{"handle": handle, **readout(*pole, discrete=is_discrete)} for handle, *pole in _placed(solved)]
 
 
-def _marks(result: Result) -> list[dict[str, str]]:
-    """Return what is not moved in the plane: poles of the plant, of F, of an optimal loop; decimals for drawing alone."""
-    plant = result.plant
+def _marks(solved: Solved) -> list[dict[str, str]]:
+    """Return what is not moved in the plane: poles of the plant, of F, of a loop; decimals for drawing alone."""
+    result, plant = solved.result, solved.result.plant
     known: list[tuple[str, Any]] = []
     if plant.polynomial is None and not plant.is_time_varying and "plane" in result.panels:
         known.append(("plant", plant.matrices.A))
         known.append(("F", result.fields.get("compensator_matrix")))
         known.append(("loop", result.loop_matrix))
-    found = []
-    for kind, matrix in known:
-        if matrix is None or not all(map(is_number, matrix.entries)):
-            continue
-        chi = matrix.characteristic_polynomial(plant.variable).coefficients(plant.variable)
-        for real, imaginary in complex_roots(list(map(fraction_near, chi))):
-            found.append({"kind": kind, "re": f"{float(real):.6f}", "im": f"{float(imaginary):.6f}"})
-    return found
+        known += _loops_of_given_gains(solved)
+    return [
+        {"kind": kind, "re": f"{float(real):.6f}", "im": f"{float(imaginary):.6f}"}
+        for kind, matrix in known
+        for real, imaginary in _eigenvalues(matrix)
+    ]
+
+
+def _loops_of_given_gains(solved: Solved) -> Iterator[tuple[str, Matrix]]:
+    """Yield the matrix of the loop that a given gain closes, under the word for one of its poles."""
+    result, m = solved.result, solved.result.plant.matrices
+    for group in pole_sets(result.task):
+        gain = result.fields.get(group.gain)
+        if group.gain in solved.problem.specification and gain is not None:
+            yield group.label, m.A - (m.B @ gain if group.gain == "K" else gain @ m.C)
+
+
+def _eigenvalues(matrix: Matrix | None) -> list[tuple[Fraction, Fraction]]:
+    """Return them rounded; none where an entry is no number."""
+    if matrix is None or not all(map(is_number, matrix.entries)):
+        return []
+    chi = matrix.characteristic_polynomial("s").coefficients("s")
+    return complex_roots(list(map(fraction_near, chi)))
 
 
 #: Designs whose fixed modes are those of a pair.

@@ -28,7 +28,7 @@ export const http = (token) => async (body, signal) => {
   return got.json();
 };
 
-// -- exact numbers of a grid: [numerator, denominator] ------------------------------------------------------------
+// -- exact numbers of a grid: [numerator, denominator] --
 
 const gcd = (a, b) => (b ? gcd(b, a % b) : Math.abs(a));
 const ratio = (n, d = 1) => { const g = gcd(n, d) || 1; return d < 0 ? [-n / g, -d / g] : [n / g, d / g]; };
@@ -91,7 +91,7 @@ function written(p) {
 const poles = (list) => list.map(written).join(", ");
 const settled = (list) => list.flatMap((p) => (p.pair && !p.im[0] ? [{ re: p.re, im: [0, 1] }, { re: p.re, im: [0, 1] }] : [p]));
 
-// -- matrices as grids of fields ------------------------------------------------------------------------------------
+// -- matrices as grids of fields --
 
 /** Split a matrix into cells; null where rows differ. @param {string} source */
 function cells(source) {
@@ -112,7 +112,7 @@ function cells(source) {
 }
 const matrix = (rows) => `[${rows.map((row) => row.map((c) => (/\s/.test(c.replace(/\(.*\)/g, "")) ? `(${c})` : c || "0")).join(" ")).join("; ")}]`;
 
-// -- state in a link ------------------------------------------------------------------------------------------------
+// -- state in a link --
 
 /** @param {string} link */
 function decoded(link) {
@@ -140,7 +140,7 @@ function encoded(state) {
   return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
 }
 
-// -- elements ---------------------------------------------------------------------------------------------------------
+// -- elements --
 
 function h(tag, attributes = {}, ...inside) {
   const made = tag.startsWith("svg:") ? document.createElementNS(SVG, tag.slice(4)) : document.createElement(tag);
@@ -151,6 +151,8 @@ function h(tag, attributes = {}, ...inside) {
   made.append(...inside.flat(Infinity).filter((part) => part !== null && part !== undefined));
   return made;
 }
+
+const sv = (tag, ...more) => h(`svg:${tag}`, ...more);
 
 /** Round numbers of an interval, about so many. */
 function ticks(low, high, count) {
@@ -179,8 +181,9 @@ export function mount(element, transport, options = {}) {
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
   let aborted = new AbortController(), language = null, notice = "", point = null, pinned = [], turns = 0, turning = 0, isLetGo = false, fill = () => {}, release = () => {};
+  const unfolded = new Set();
   let origin = encoded(s), steps = [origin], reached = 0;
-  const el = {};
+  const el = {}, focused = () => root.getRootNode().activeElement, find = (name, of = "where") => root.querySelector(`[data-${of}="${CSS.escape(name)}"]`);
 
   const w = (name, slots = {}) => filled(language[name], slots);
   const pretty = (s) => s.replace(/(?<!\p{L}{2})-|-(?!\p{L}{2})/gu, "−").replace(/(\d)\.(?=\d)/g, `$1${language.decimal_mark}`);
@@ -188,7 +191,7 @@ export function mount(element, transport, options = {}) {
   const labelOf = (key) => language[`field_${key}`] ?? key.replace(/_/g, " ");
   const why = (error) => (error.status ? w(error.status === 403 ? "another_page" : "server_says", error) : error.message);
 
-  // -- the frame of the page ------------------------------------------------------------------------------------------
+  // -- the frame of the page --
 
   const panel = (name, ...inside) => {
     const label = w("close", { panel: w(name) }), close = h("button", { class: "quiet", title: label, "aria-label": label, onclick: () => fold(name, true) }, "×");
@@ -216,13 +219,11 @@ export function mount(element, transport, options = {}) {
     el.hint.textContent = w("drag");
     el.pins = h("div", { class: "pins" });
     el.live = h("div", { class: "hidden", "aria-live": "polite", role: "status" });
-    el.poles = h("svg:svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": w("plane_of_poles") });
+    el.poles = sv("svg", { class: "picture", viewBox: "0 0 480 360", role: "group", "aria-label": w("plane_of_poles") });
     el.texts = h("div", { class: "fields" });
-    el.curves = h("svg:svg", { class: "picture", viewBox: "0 0 480 300", role: "img", "aria-label": w("responses") });
-    el.effort = h("svg:svg", { class: "picture effort", viewBox: "0 0 480 300", role: "img", "aria-label": w("effort") });
-    el.efforts = h("p", { class: "legend" });
-    for (const name of ["magnitude", "phase", "locus"]) el[name] = h("svg:svg", { class: "picture effort", viewBox: "0 0 480 300", role: "img", "aria-label": w(name) });
-    for (const name of ["margins", "magnitudes", "phases", "loci"]) el[name] = h("p", { class: "legend" });
+    el.curves = sv("svg", { class: "picture", viewBox: "0 0 480 300", role: "img", "aria-label": w("responses") });
+    for (const name of ["effort", "magnitude", "phase", "locus"]) el[name] = sv("svg", { class: "picture effort", viewBox: "0 0 480 300", role: "img", "aria-label": w(name) });
+    for (const name of ["efforts", "margins", "magnitudes", "phases", "loci"]) el[name] = h("p", { class: "legend" });
     el.goals = h("div", { class: "fields" });
     el.required = h("details", { class: "goals", open: Object.keys(s.goal).length > 0 }, h("summary", {}, w("goals")), el.goals);
     el.starts = h("div", { class: "fields starts" });
@@ -238,12 +239,13 @@ export function mount(element, transport, options = {}) {
       h("div", { class: "grid" }, el.plant, panel("region", el.map, el.point), panel("plane", el.met, el.poles, el.marks, el.texts, el.required, el.hint), panel("responses", el.curves, el.legend, el.effort, el.efforts, el.starts), panel("loop", el.margins, [[el.magnitude, el.magnitudes], [el.phase, el.phases], [el.locus, el.loci]].map((each) => h("div", {}, each))), panel("cases"), panel("cards", el.verdict, el.notes, el.list, el.pins), panel("page", el.html)),
       el.live,
     );
-    el.drive = h("select", { "aria-label": w("drive"), onchange: () => { s.step = el.drive.value; commit(true); ask(); } }, [["", "drive_state"], ["1", "drive_step"]].map(([value, word]) => h("option", { value }, w(word))));
+    el.drive = h("select", { "aria-label": w("drive"), onchange: () => { s.step = el.drive.value; settle(); } }, [["", "drive_state"], ["1", "drive_step"]].map(([value, word]) => h("option", { value }, w(word))));
     el.responsesBar.append(el.drive);
     el.pin = h("button", { class: "quiet", onclick: pin }, w("pin"));
     el.cardsBar.append(el.pin);
     drawPins();
-    el.planeBar.append(h("label", {}, `${w("grid")} `, el.snap));
+    el.gains = h("span", {});
+    el.planeBar.append(el.gains, h("label", {}, `${w("grid")} `, el.snap));
     el.detail = h("select", { "aria-label": w("detail"), onchange: () => { s.detail = el.detail.value; commit(true); rest(0); } }, DETAILS.map((d) => h("option", { value: d }, w(`detail_${d}`))));
     el.pageBar.append(el.detail);
     offer();
@@ -266,7 +268,7 @@ export function mount(element, transport, options = {}) {
     root.dataset.task = s.task;
   }
 
-  // -- asking: one question under way, the newest waits -----------------------------------------------------------------
+  // -- asking: one question under way, the newest waits --
 
   const problem = () => {
     const told = { task: s.task, plant: { ...s.plant }, specification: { ...s.spec }, symbols: s.symbols };
@@ -383,11 +385,22 @@ export function mount(element, transport, options = {}) {
       if (signal.aborted || gone) return;  // a newer question has taken its place
       answered.page = asked;
       fade();
-      if (got.html) el.html.innerHTML = got.html;
+      if (got.html) {
+        el.html.innerHTML = got.html;
+        el.html.querySelectorAll("h3").forEach(folded);
+      }
       else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), ...(got.status === "undecided" ? [h("button", { onclick: () => rest(0) }, w("try_again"))] : []));
       el.page.setAttribute("aria-busy", "false");
       reachable();
     }, after);
+  }
+
+  /** Fold what stands below a heading; what was opened before stays open. */
+  function folded(heading) {
+    const name = heading.textContent, part = h("details", { open: unfolded.has(name), ontoggle: () => { unfolded[part.open ? "add" : "delete"](name); reachable(); } });
+    heading.replaceWith(part);
+    while (part.nextSibling && !part.nextSibling.matches?.("h3, .references")) part.append(part.nextSibling);
+    part.prepend(h("summary", {}, heading));
   }
 
   /** Let the keyboard reach formulas that are wider than their place, to scroll them. */
@@ -408,7 +421,7 @@ export function mount(element, transport, options = {}) {
     el.message.replaceChildren(...(words ? [h("span", {}, words), again ? h("button", { onclick: () => { say(""); again(); } }, w("try_again")) : ""] : []));
   }
 
-  // -- changes ----------------------------------------------------------------------------------------------------------
+  // -- changes --
 
   function commit(final) {
     refused = false;
@@ -441,7 +454,8 @@ export function mount(element, transport, options = {}) {
     for (const [name, is] of Object.entries(idle)) el[name].setAttribute("aria-disabled", String(is));
   }
   // Fields are built anew when the focus has reached the next one.
-  function problemChanged() { commit(true); setTimeout(() => gone || build()); ask(); }
+  function problemChanged() { settle(); setTimeout(() => gone || build()); }
+  function settle() { commit(true); ask(); }
 
   function choose() {
     const found = start?.examples.find((e) => e.title === el.examples.value), { snap, closed, detail, language } = s;
@@ -502,7 +516,7 @@ export function mount(element, transport, options = {}) {
     } catch (error) { say(w("not_saved", { reason: why(error) })); }
   }
 
-  // -- the problem: matrices, specification, symbols ---------------------------------------------------------------------
+  // -- the problem: matrices, specification, symbols --
 
   /** Hand on what was typed, with decimal points; a comma that may part entries or be a decimal mark is refused at its field. */
   function typed(input, changed) {
@@ -523,9 +537,9 @@ export function mount(element, transport, options = {}) {
 
   /** Do what builds fields anew; the focus stays where it is, and so does what is being typed. */
   function keepingFocus(renew) {
-    const active = root.getRootNode().activeElement, { where, set } = root.contains(active) ? active?.dataset ?? {} : {};
+    const active = focused(), { where, set } = root.contains(active) ? active?.dataset ?? {} : {};
     renew();
-    const again = where || set ? root.querySelector(where ? `[data-where="${CSS.escape(where)}"]` : `[data-set="${CSS.escape(set)}"]`) : null;
+    const again = where || set ? (where ? find(where) : find(set, "set")) : null;
     if (!again || again === active) return;
     if (active.value !== active.defaultValue) again.value = active.value;
     again.focus({ preventScroll: true });
@@ -565,10 +579,10 @@ export function mount(element, transport, options = {}) {
     const tables = Object.fromEntries(listed.map((name) => [name, cells(s.plant[name])]));
     const sizes = Object.entries({ states: tables.A?.length, inputs: tables.B?.[0]?.length, outputs: tables.C?.length }).filter(([, count]) => count).map(([kind, count]) => h("span", { class: "size" }, `${w(`count_${kind}`)} ${count} `, [[-1, "−"], [1, "+"]].map(([by, sign]) => h("button", { class: "quiet", "aria-label": w(by < 0 ? "fewer" : "more", { kind: w(`count_${kind}`) }), "data-where": `${kind}${by}`, "aria-disabled": String(count + by < 1), onclick: () => { if (count + by > 0 && !turning) resize(tables, kind, by); } }, sign))));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));
-    const others = Object.keys(s.spec).filter((key) => !setKeys.includes(key) && key !== "observer").map(told);
+    const others = Object.keys(s.spec).filter((key) => ![...setKeys, ...given(), "observer"].includes(key)).map(told);
     const kind = s.task === "compensator" ? h("label", { class: "field" }, h("span", {}, w("kind")), h("select", { onchange: (e) => { s.spec.observer = e.target.value; fitObserver(); problemChanged(); } }, ["full", "minimal"].map((k) => h("option", { value: k, selected: (s.spec.observer ?? "full") === k }, w(`kind_${k}`))))) : null;
     const names = Object.keys(s.symbols).filter((n) => !axes().includes(n) || !view);
-    const sliders = names.map((name) => slider(name));
+    const sliders = names.map((name) => slider(name, `at.${name}`, s.at[name] ?? "", (t) => { if (t) s.at[name] = t; else delete s.at[name]; return t; }, s.symbols[name]));
     el.plant.replaceChildren(h("header", {}, h("h2", {}, w("problem"))), h("div", { class: "body" }, h("div", { class: "matrices" }, rows), sizes.length ? h("div", { class: "sizes" }, sizes) : null, kind, others, sliders.length ? h("div", { class: "sliders" }, sliders) : null, all));
     if ([...el.task.options].some((o) => o.value === s.task)) el.task.value = s.task;
     el.snap.value = s.snap;
@@ -615,13 +629,26 @@ export function mount(element, transport, options = {}) {
     s.spec.observer_poles = Array.from({ length: wanted }, (_, k) => written(flat[Math.min(k, flat.length - 1)])).join(", ");
   }
 
-  function slider(name) {
-    const sign = s.symbols[name], low = /positive|nonnegative/.test(sign) ? 0 : -10, high = /negative|nonpositive/.test(sign) && sign !== "nonnegative" ? 0 : 10;
-    const set = (t, final) => { if (t) s.at[name] = t; else delete s.at[name]; exact.value = t; range.value = t && rational(t) ? String(value(rational(t)) * GRID) : range.value; commit(final); ask(); };
-    const range = h("input", { type: "range", min: (low || 0) * GRID, max: high * GRID, step: 1, value: rational(s.at[name] ?? "") ? value(rational(s.at[name])) * GRID : (low + high) * GRID / 2, "aria-label": `${name}, ${sign}`, oninput: () => { held = "slider"; set(text(ratio(Number(range.value), GRID)), false); }, onchange: () => { held = null; commit(true); ask(); } });
-    const exact = field(`at.${name}`, w("value_of", { name }), s.at[name] ?? "", (t) => set(t, true), false);
+  /** A slider and an exact value, of a letter or of an entry of a gain; `put` takes the value and returns what is kept. */
+  function slider(name, where, given, put, sign = "real") {
+    const far = Math.abs(numberOf(given)), most = far > 10 ? 2 * Math.ceil(far) : 10;
+    const low = /positive|nonnegative/.test(sign) ? 0 : -most, high = /negative|nonpositive/.test(sign) && sign !== "nonnegative" ? 0 : most;
+    const show = (t) => { if (rational(t)) range.value = String(numberOf(t) * GRID); };
+    const set = (t, final) => { exact.value = put(t); show(t); isLetGo ||= final; commit(final); ask(); };
+    const range = h("input", { type: "range", min: low * GRID, max: high * GRID, "aria-label": `${name}, ${sign}`, "data-where": `move.${where}`, oninput: () => { held = "slider"; set(text(ratio(Number(range.value), GRID)), false); }, onchange: () => { held = null; isLetGo = true; settle(); } });
+    show(given);
+    const exact = field(where, w("value_of", { name }), given, (t) => set(t, true), false);
     exact.setAttribute("placeholder", view?.region?.drawn_for?.[name] ?? w("letter"));
-    return h("div", { class: "slider" }, h("i", {}, name), range, exact, h("small", { class: "wrong", "data-of": `at.${name}` }));
+    return h("div", { class: "slider" }, h("i", {}, name), range, exact, h("small", { class: "wrong", "data-of": where.replace(/\[.*/, "") }));
+  }
+
+  /** Let a gain be moved in the place of its poles, or these again. */
+  function give(name) {
+    const group = view.sets.find((g) => g.gain === name);
+    if (isOld("answer")) return;
+    if (group) s.spec[name] = matrix(answer.result[name].map((row) => row.map((entry) => entry.replace(/\*\*/g, "^"))));
+    delete s.spec[group?.key ?? name];
+    if (group) problemChanged(); else turn(s.task);
   }
 
   function takeView() {
@@ -643,14 +670,27 @@ export function mount(element, transport, options = {}) {
     } else el.point.replaceChildren(h("p", { class: "pale" }, w("no_picture")));
   }
 
-  // -- poles in their plane ---------------------------------------------------------------------------------------------
+  // -- poles in their plane --
+
+  /** The gains that are moved themselves. */
+  const given = () => (view?.given ?? []).filter((name) => cells(s.spec[name] ?? ""));
+
+  function entriesOf(name) {
+    const table = cells(s.spec[name]);
+    const label = (i, j) => `${name}${SUB(Math.min(table.length, table[0].length) < 2 ? i + j + 1 : `${i + 1}${j + 1}`)}`;
+    return table.flatMap((row, i) => row.map((cell, j) => slider(label(i, j), `specification.${name}[${i + 1},${j + 1}]`, cell, (t) => {
+      row[j] = t || "0";
+      s.spec[name] = matrix(table);
+      return row[j];
+    })));
+  }
 
   function buildSets() {
     sets = Object.fromEntries((view?.sets ?? []).map((group) => [group.key, handles(s.spec[group.key] ?? "")]));
-    el.texts.replaceChildren(...(view?.sets ?? []).map((group) => labelled(w(`${group.label}s`), poleField(group), group.mark, `specification.${group.key}`)));
-    el.starts.replaceChildren(field("courses.start", "x(0)", s.x0 || "", (t) => { s.x0 = t; commit(true); ask(); }), ...(s.task === "state_feedback" ? [] : [field("courses.estimate", "x̂(0)", s.xh0 || "", (t) => { s.xh0 = t; commit(true); ask(); })]));
+    el.texts.replaceChildren(...(view?.sets ?? []).map((group) => labelled(w(`${group.label}s`), poleField(group), group.mark, `specification.${group.key}`)), ...given().flatMap(entriesOf));
+    el.starts.replaceChildren(field("courses.start", "x(0)", s.x0 || "", (t) => { s.x0 = t; settle(); }), ...(s.task === "state_feedback" ? [] : [field("courses.estimate", "x̂(0)", s.xh0 || "", (t) => { s.xh0 = t; settle(); })]));
     for (const [input, fallback] of [[el.starts.querySelectorAll("input")[0], "1, 1, …"], [el.starts.querySelectorAll("input")[1], "0, 0, …"]]) input?.setAttribute("placeholder", fallback);
-    el.goals.replaceChildren(...GOALS.filter((name) => name === "gain" || !view?.discrete).map((name) => field(`goal.${name}`, w(`goal_${name}`), s.goal[name], (t) => { if (t) s.goal[name] = t; else delete s.goal[name]; commit(true); ask(); })));
+    el.goals.replaceChildren(...GOALS.filter((name) => name === "gain" || !view?.discrete).map((name) => field(`goal.${name}`, w(`goal_${name}`), s.goal[name], (t) => { if (t) s.goal[name] = t; else delete s.goal[name]; settle(); })));
     drawPlane(true);
   }
 
@@ -659,7 +699,7 @@ export function mount(element, transport, options = {}) {
 
   /** Say above the plane which goals are met. */
   function drawGoals() {
-    for (const name of GOALS) el.goals.querySelector(`[data-where="goal.${name}"]`)?.closest(".field").querySelector("span").replaceChildren(goalName(name));
+    for (const name of GOALS) find(`goal.${name}`)?.closest(".field").querySelector("span").replaceChildren(goalName(name));
     el.met.replaceChildren(...GOALS.filter((name) => answer.goal?.[name]).map((name) => {
       const { met, value } = answer.goal[name];
       return h("span", {}, `${goalName(name)}: ${pretty(s.goal[name] ?? "")} `, h("b", { class: "met", "data-met": String(met) }, `${value ? `(${pretty(value)}) ` : ""}${MET[met] ?? "○"}`, h("span", { class: "hidden" }, w({ true: "met", false: "missed" }[met] ?? "open"))));
@@ -667,14 +707,14 @@ export function mount(element, transport, options = {}) {
   }
 
   function poleField(group) {
-    return h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": w(`${group.label}s`), spellcheck: "false", onchange: (e) => typed(e.target, (t) => { s.spec[group.key] = t; sets[group.key] = handles(t); drawPlane(true); commit(true); ask(); }) });
+    return h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": w(`${group.label}s`), spellcheck: "false", onchange: (e) => typed(e.target, (t) => { s.spec[group.key] = t; sets[group.key] = handles(t); drawPlane(true); settle(); }) });
   }
 
   function moved(final) {
     for (const key of Object.keys(sets)) {
       s.spec[key] = poles(sets[key]);
-      const input = el.texts.querySelector(`[data-set="${key}"]`);
-      if (input && root.getRootNode().activeElement !== input) input.value = s.spec[key];
+      const input = find(key, "set");
+      if (input && focused() !== input) input.value = s.spec[key];
     }
     commit(final);
     drawPlane();
@@ -696,11 +736,11 @@ export function mount(element, transport, options = {}) {
   function drawPlane(refit = false) {
     if (!view?.panels.includes("plane")) return;
     if (!frame || (refit && !held)) fit();
-    const focus = root.getRootNode().activeElement?.getAttribute?.("data-handle");
+    const focus = focused()?.dataset.handle;
     const grounded = JSON.stringify([frame, view.discrete, root.lang]), parts = [];
-    if (el.poles.firstChild?.dataset.of !== grounded) el.poles.replaceChildren(h("svg:g", { "data-of": grounded }, ground()));
+    if (el.poles.firstChild?.dataset.of !== grounded) el.poles.replaceChildren(sv("g", { "data-of": grounded }, ground()));
     else while (el.poles.childElementCount > 1) el.poles.lastChild.remove();
-    const line = (x1, y1, x2, y2) => parts.push(h("svg:line", { class: "goal", x1, y1, x2, y2 })), { settling, overshoot } = answer?.goal ?? {};
+    const line = (x1, y1, x2, y2) => parts.push(sv("line", { class: "goal", x1, y1, x2, y2 })), { settling, overshoot } = answer?.goal ?? {};
     const cut = settling ? X(Number(settling.re)) : 0;
     if (cut > 40 && cut < 464) line(cut, 16, cut, 336);
     if (overshoot?.slope) for (const side of [-1, 1]) {
@@ -709,40 +749,42 @@ export function mount(element, transport, options = {}) {
     }
     for (const m of answer?.marks ?? []) {
       const [x, y] = [X(Number(m.re)), Y(Number(m.im))];
-      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(h("svg:path", { class: `mark ${m.kind}`, d: MARKS[m.kind](x, y) }, h("svg:title", {}, w(`pole_of_${m.kind}`))));
+      if (x > 38 && x < 466 && y > 14 && y < 338) parts.push(sv("path", { class: `mark ${m.kind}`, d: MARKS[m.kind](x, y) }, sv("title", {}, markName(m.kind))));
     }
     for (const group of view.sets) {
       const list = sets[group.key] ?? [], count = list.length;
       list.forEach((p, k) => p.raw || parts.push(handle(group, list, p, k, count)));
     }
-    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(h("svg:text", { x: 46, y: 330 }, w("in_fields")));
+    if (Object.values(sets).flat().some((p) => p.raw)) parts.push(sv("text", { x: 46, y: 330 }, w("in_fields")));
     el.poles.append(...parts);
     drawMarks();
     if (focus) refocus(focus);
   }
 
   const CROSS = (x, y, r) => `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}`;
-  const MARKS = { plant: (x, y) => CROSS(x, y, 3.5), F: (x, y) => `M${x - 4} ${y}h8M${x} ${y - 4}v8`, loop: (x, y) => `M${x} ${y - 5}l5 5-5 5-5-5z` };
+  const MARKS = { plant: (x, y) => CROSS(x, y, 3.5), F: (x, y) => `M${x - 4} ${y}h8M${x} ${y - 4}v8`, loop: (x, y) => `M${x} ${y - 5}l5 5-5 5-5-5z`, control_pole: (x, y) => CROSS(x, y, 5), observer_pole: (x, y) => `M${x - 5} ${y}a5 5 0 1 1 0 .01` };
+  const markName = (kind) => language[`pole_of_${kind}`] ?? w(kind);
 
   /** Say what the signs in the plane are. */
   function drawMarks() {
     const kinds = [...new Set((answer?.marks ?? []).map((m) => m.kind))];
     if (el.marks.dataset.of === `${view.sets.map((g) => g.mark)}${kinds}${root.lang}`) return;
-    el.hint.hidden = el.required.hidden = !view.sets.length;
+    el.hint.hidden = !view.sets.length;
+    el.required.hidden = !view.sets.length && !view.given.length;
     el.marks.dataset.of = `${view.sets.map((g) => g.mark)}${kinds}${root.lang}`;
-    const sign = (mark, of, words) => h("span", {}, h("svg:svg", { viewBox: "0 0 16 16", "aria-hidden": "true", class: of }, mark), words);
-    const ring = h("svg:circle", { class: "glyph", cx: 8, cy: 8, r: 5 }), cross = h("svg:path", { class: "glyph", d: CROSS(8, 8, 5) });
-    el.marks.replaceChildren(...view.sets.map((g) => sign(g.mark === "cross" ? cross : ring, g.mark, w(g.label))), ...kinds.map((k) => sign(h("svg:path", { class: "mark", d: MARKS[k](8, 8) }), "", w(`pole_of_${k}`))));
+    const sign = (mark, of, words) => h("span", {}, sv("svg", { viewBox: "0 0 16 16", "aria-hidden": "true", class: of }, mark), words);
+    const ring = sv("circle", { class: "glyph", cx: 8, cy: 8, r: 5 }), cross = sv("path", { class: "glyph", d: CROSS(8, 8, 5) });
+    el.marks.replaceChildren(...view.sets.map((g) => sign(g.mark === "cross" ? cross : ring, g.mark, w(g.label))), ...kinds.map((k) => sign(sv("path", { class: `mark ${k}`, d: MARKS[k](8, 8) }), "", markName(k))));
   }
 
   /** What stands still while poles are moved: the stable part, and the lines with their numbers. */
   function ground() {
     const [x0, x1, y0, y1] = [(40 - frame.x) / frame.scale, (464 - frame.x) / frame.scale, (frame.y - 336) / frame.scale, (frame.y - 16) / frame.scale];
-    const line = (name, a, b, c, d) => h("svg:line", { class: name, x1: a, y1: b, x2: c, y2: d });
-    const label = (x, y, words, anchor) => h("svg:text", { x, y, "text-anchor": anchor }, pretty(words));
-    const parts = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 320 })];
-    if (view.discrete) parts.push(h("svg:circle", { class: "stable", cx: X(0), cy: Y(0), r: frame.scale }));
-    else parts.push(h("svg:rect", { class: "stable", x: 40, y: 16, width: Math.max(0, Math.min(464, X(0)) - 40), height: 320 }));
+    const line = (name, a, b, c, d) => sv("line", { class: name, x1: a, y1: b, x2: c, y2: d });
+    const label = (x, y, words, anchor) => sv("text", { x, y, "text-anchor": anchor }, pretty(words));
+    const parts = [sv("rect", { class: "ground", x: 40, y: 16, width: 424, height: 320 })];
+    if (view.discrete) parts.push(sv("circle", { class: "stable", cx: X(0), cy: Y(0), r: frame.scale }));
+    else parts.push(sv("rect", { class: "stable", x: 40, y: 16, width: Math.max(0, Math.min(464, X(0)) - 40), height: 320 }));
     for (const x of ticks(x0, x1, 8)) parts.push(line("rule", X(x), 16, X(x), 336), label(X(x), 350, String(x), "middle"));
     for (const y of ticks(y0, y1, 6)) parts.push(line("rule", 40, Y(y), 464, Y(y)), label(34, Y(y) + 4, `${y || 0}`, "end"));
     parts.push(line("axis", 40, Y(0), 464, Y(0)));
@@ -765,11 +807,11 @@ export function mount(element, transport, options = {}) {
     const nested = p.pair && !p.im[0];
     const glyph = ([x, y], index) => {
       const r = 6.5 + 4 * (same + (nested ? index : 0));
-      return [h("svg:circle", { class: "hit", cx: x, cy: y, r: 18 }), h("svg:circle", { class: "halo", cx: x, cy: y, r: 12 }), group.mark === "cross" ? h("svg:path", { class: "glyph", d: CROSS(x, y, r) }) : h("svg:circle", { class: "glyph", cx: x, cy: y, r })];
+      return [sv("circle", { class: "hit", cx: x, cy: y, r: 18 }), sv("circle", { class: "halo", cx: x, cy: y, r: 12 }), group.mark === "cross" ? sv("path", { class: "glyph", d: CROSS(x, y, r) }) : sv("circle", { class: "glyph", cx: x, cy: y, r })];
     };
     const said = isOld("answer") ? null : answer?.readouts?.find((r) => r.handle === `${group.key}.${k}`);
     const isHeld = held && held.p === p;
-    const mine = h("svg:g", {
+    const mine = sv("g", {
       class: `handle ${group.mark}${isHeld ? " held" : ""}`, tabindex: 0, role: "slider", "data-handle": `${group.key}.${k}`,
       "aria-label": w("one_of", { pole: w(group.label), number: k + 1, count }), "aria-roledescription": w("pole"), "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
       onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) { before = JSON.stringify(sets); drawPlane(); } },
@@ -781,7 +823,7 @@ export function mount(element, transport, options = {}) {
     if (said?.settles) lines.push(w("mode_settles", { time: pretty(said.settles) }));
     if (said?.modulus) lines.push(`|z| = ${pretty(said.modulus)}`);
     const below = y < 90, up = below ? 0 : lines.length - 1;
-    mine.append(...lines.map((words, n) => h("svg:text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: below ? y + 26 : y - 12, dy: `${1.25 * (n - up)}em`, "text-anchor": right ? "start" : "end" }, words)));
+    mine.append(...lines.map((words, n) => sv("text", { class: n ? "readout" : "readout first", x: x + (right ? 16 : -16), y: below ? y + 26 : y - 12, dy: `${1.25 * (n - up)}em`, "text-anchor": right ? "start" : "end" }, words)));
     return mine;
   }
 
@@ -845,7 +887,7 @@ export function mount(element, transport, options = {}) {
       case "ArrowRight": p.re = plus(p.re, by); break;
       case "ArrowUp": if (p.pair) p.im = plus(p.im, by); else place(group, p, value(p.re), Math.max(2 * step(), far) / GRID); break;
       case "ArrowDown": if (!p.pair) return; p.im = plus(p.im, back); if (p.im[0] < 0) p.im = [0, 1]; break;
-      case "Enter": el.texts.querySelector(`[data-set="${group.key}"]`)?.focus(); event.preventDefault(); return;
+      case "Enter": find(group.key, "set")?.focus(); event.preventDefault(); return;
       case "Escape": if (before) sets = JSON.parse(before); moved(true); event.preventDefault(); return;
       default: return;
     }
@@ -857,11 +899,11 @@ export function mount(element, transport, options = {}) {
   }
   const outside = (p) => X(value(p.re)) < 48 || X(value(p.re)) > 456 || Y(value(p.im)) < 24;
 
-  // -- the region -------------------------------------------------------------------------------------------------------
+  // -- the region --
 
   function buildPoint() {
     const region = view.region, svg = el.map.querySelector("svg");
-    const fields = region.parameters.map((name) => field(`at.${name}`, name, s.at[name], (t) => { s.at[name] = t; commit(true); ask(); drawPointHandle(); }));
+    const fields = region.parameters.map((name) => field(`at.${name}`, name, s.at[name], (t) => { s.at[name] = t; settle(); drawPointHandle(); }));
     const name = region.parameters[0], [low, high] = (region.values ?? ["0", "1"]).map(numberOf);
     const scrubbed = () => {
       held = "scrub";
@@ -870,21 +912,20 @@ export function mount(element, transport, options = {}) {
       commit(false);
       ask();
     };
-    const scrub = region.values ? h("input", { type: "range", class: "scrub", "aria-label": name, min: 0, max: 400, step: 1, value: Math.round(((numberOf(s.at[name]) - low) / (high - low)) * 400) || 0, oninput: scrubbed, onchange: () => { held = null; commit(true); ask(); } }) : null;
+    const scrub = region.values ? h("input", { type: "range", class: "scrub", "aria-label": name, min: 0, max: 400, step: 1, value: Math.round(((numberOf(s.at[name]) - low) / (high - low)) * 400) || 0, oninput: scrubbed, onchange: () => { held = null; settle(); } }) : null;
     el.pointVerdict = h("p", { class: "verdict" });
     el.pointMath = h("div", { class: "symobs" });
     el.point.replaceChildren(h("div", { class: "fields" }, fields), scrub ?? "", el.pointVerdict, el.pointMath);
     if (!svg || region.kind !== "plane") return;
-    el.dot = h("svg:g", { class: "handle pick", tabindex: 0, role: "slider", "aria-roledescription": w("point"), "aria-label": w("point_of", { names: region.parameters.join(", ") }), "aria-valuenow": 0, onkeydown: (e) => {
+    el.dot = sv("g", { class: "handle pick", tabindex: 0, role: "slider", "aria-roledescription": w("point"), "aria-label": w("point_of", { names: region.parameters.join(", ") }), "aria-valuenow": 0, onkeydown: (e) => {
       const moves = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowDown: [1, -1], ArrowUp: [1, 1] }[e.key];
       if (!moves) return;
       e.preventDefault();
       const name = region.parameters[moves[0]];
       s.at[name] = text(plus(rational(s.at[name]) ?? [0, 1], ratio(moves[1] * step() * (e.shiftKey ? 10 : 1), GRID)));
       drawPointHandle();
-      commit(true);
-      ask();
-    }, onpointerdown: grabPoint }, h("svg:circle", { class: "hit", r: 12 }), h("svg:circle", { class: "halo", r: 6 }), h("svg:circle", { class: "glyph", r: 3.4 }));
+      settle();
+    }, onpointerdown: grabPoint }, sv("circle", { class: "hit", r: 12 }), sv("circle", { class: "halo", r: 6 }), sv("circle", { class: "glyph", r: 3.4 }));
     svg.append(el.dot);
     svg.addEventListener("pointerdown", (e) => { if (!el.dot.contains(e.target)) grabPoint(e); });
     drawPointHandle();
@@ -905,7 +946,7 @@ export function mount(element, transport, options = {}) {
       if (inside) el.dot.setAttribute("transform", `translate(${placeOf(0)} ${placeOf(1)})`);
       el.dot.setAttribute("aria-valuetext", region.parameters.map((n) => `${n} = ${pretty(s.at[n])}`).join(", "));
     }
-    region.parameters.forEach((name) => { const input = el.point.querySelector(`[data-where="at.${name}"]`); if (input && root.getRootNode().activeElement !== input) input.value = s.at[name]; });
+    region.parameters.forEach((name) => { const input = find(`at.${name}`); if (input && focused() !== input) input.value = s.at[name]; });
   }
 
   function grabPoint(event) {
@@ -925,8 +966,7 @@ export function mount(element, transport, options = {}) {
     pursue(event, svg, follow, (back) => {
       if (back) s.at = before;
       drawPointHandle();
-      commit(true);
-      ask();
+      settle();
       el.dot.focus({ preventScroll: true });
     });
     follow(event);
@@ -948,11 +988,11 @@ export function mount(element, transport, options = {}) {
     if (view.region.kind === "locus") {
       const svg = el.map.querySelector("svg"), [left, top, width, height] = view.region.frame, [[a, b], [c, d]] = view.region.window.map((w) => w.map(numberOf));
       svg.querySelectorAll(".root").forEach((e) => e.remove());
-      for (const r of got.roots) svg.append(h("svg:circle", { class: "root", cx: left + (width * (middle(r.re) - a)) / (b - a), cy: top + height * (1 - (middle(r.im) - c) / (d - c)), r: 2.6 }));
+      for (const r of got.roots) svg.append(sv("circle", { class: "root", cx: left + (width * (middle(r.re) - a)) / (b - a), cy: top + height * (1 - (middle(r.im) - c) / (d - c)), r: 2.6 }));
     }
   }
 
-  // -- answers ----------------------------------------------------------------------------------------------------------
+  // -- answers --
 
   /** Take away what was wrong; what a field of the page itself refused stays until the field is changed. */
   function clearWrong() {
@@ -974,8 +1014,8 @@ export function mount(element, transport, options = {}) {
     for (const { where, message, repair, lang, undeclared } of errors) {
       const words = `${message}${repair ? `: ${repair}` : ""}`, base = where.replace(/\[.*$/, "");
       const exact = where.replace(/\[(\d+)\]\[(\d+)\]$/, (_, i, j) => `[${Number(i) + 1},${Number(j) + 1}]`);
-      const input = root.querySelector(`[data-where="${CSS.escape(exact)}"]`) ?? root.querySelector(`[data-set="${CSS.escape(base.replace("specification.", ""))}"]`) ?? root.querySelector(`[data-where="${CSS.escape(base)}"]`);
-      const below = root.querySelector(`.wrong[data-of="${CSS.escape(base)}"]`), field = input ?? (below ? null : root.querySelector(`[data-where="${CSS.escape(base.replace("plant.", "text."))}"]`));
+      const input = find(exact) ?? find(base.replace("specification.", ""), "set") ?? find(base);
+      const below = find(base, "of"), field = input ?? (below ? null : find(base.replace("plant.", "text.")));
       field?.setAttribute("aria-invalid", "true");
       field?.closest("details")?.setAttribute("open", "");
       const spot = field?.closest(".field")?.querySelector(".wrong") ?? below;
@@ -1003,6 +1043,8 @@ export function mount(element, transport, options = {}) {
     el.verdict.dataset.verdict = got.unstable.length ? "unstable" : got.verdict;
     if (el.notes.textContent !== (got.note ?? "")) el.notes.textContent = got.note ?? "";
     drawCards(got);
+    const others = (names, words) => names.map((name) => h("button", { class: "quiet", "data-where": `give.${name}`, onclick: () => give(name) }, w(words, { name })));
+    keepingFocus(() => el.gains.replaceChildren(...others(view.sets.map((g) => g.gain).filter((name) => got.result[name]), "move_gain"), ...others(view.given, "move_poles")));
     drawGoals();
     if (!el.cases.hidden) drawCases(got);
     if (!el.responses.hidden) {
@@ -1068,19 +1110,19 @@ export function mount(element, transport, options = {}) {
     if (svg.classList.toggle("absent", !got)) { legend.replaceChildren(); return; }
     const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf));
     const px = (t) => 40 + ((t - t0) / (t1 - t0)) * 424, py = (v) => 268 - ((v - low) / (high - low || 1)) * 252;
-    const made = [h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
-    for (const t of ticks(t0, t1, 7)) made.push(h("svg:line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), h("svg:text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(all.lg ? Number((10 ** t).toPrecision(2)) : t))));
-    for (const v of got.rules ?? ticks(low, high, 6)) made.push(h("svg:line", { class: v === (got.axis ?? 0) ? "axis" : "rule", x1: 40, y1: py(v), x2: 464, y2: py(v) }), h("svg:text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
-    made.push(h("svg:text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, all.lg ?? (all.discrete ? "k" : "t")));
+    const made = [sv("rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
+    for (const t of ticks(t0, t1, 7)) made.push(sv("line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), sv("text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(all.lg ? Number((10 ** t).toPrecision(2)) : t))));
+    for (const v of got.rules ?? ticks(low, high, 6)) made.push(sv("line", { class: v === (got.axis ?? 0) ? "axis" : "rule", x1: 40, y1: py(v), x2: 464, y2: py(v) }), sv("text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
+    made.push(sv("text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, all.lg ?? (all.discrete ? "k" : "t")));
     const told = [], named = [];
     for (const line of got.lines) {
       const n = line.heights.length - 1, place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
       const kind = `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`;
-      made.push(h("svg:path", { class: kind, d: pathOf(line.heights, place) }));
-      if (all.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(h("svg:circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
+      made.push(sv("path", { class: kind, d: pathOf(line.heights, place) }));
+      if (all.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(sv("circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
       const settles = [Number(line.overshoot) ? w("overshoots", { percent: pretty(line.overshoot) }) : "", line.settles ? w("settles", { time: pretty(line.settles) }) : "", line.signal === "u" && line.peak ? w("peak", { peak: pretty(line.peak) }) : ""].filter(Boolean).join(", ");
       if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(line.last) })}${settles && `, ${settles}`}`);
-      named.push(h("span", {}, h("svg:svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, h("svg:path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
+      named.push(h("span", {}, sv("svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, sv("path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
     }
     if (all.end) svg.setAttribute("aria-label", told.length ? w("up_to", { end: all.end, told: told.join("; ") }) : w(svg === el.effort ? "effort" : "responses"));
     svg.replaceChildren(...made);
@@ -1099,12 +1141,12 @@ export function mount(element, transport, options = {}) {
     el.locus.classList.toggle("absent", !got);
     if (!got) { el.loci.textContent = ""; return; }
     const scale = 126 / Number(got.reach), x = (re) => 252 + re * scale, y = (im) => 142 - im * scale;
-    const line = (x1, y1, x2, y2) => h("svg:line", { class: "axis", x1, y1, x2, y2 }), clip = `symobs-clip-${mounted}`;
-    const curve = (sign, more) => h("svg:path", { class: `curve c0${more}`, "clip-path": `url(#${clip})`, d: pathOf(got.locus.map((p) => (p.includes(null) ? null : p)), (p) => `${x(p[0] / got.parts).toFixed(1)} ${y((sign * p[1]) / got.parts).toFixed(1)}`) });
-    el.locus.replaceChildren(h("svg:clipPath", { id: clip }, h("svg:rect", { x: 40, y: 16, width: 424, height: 252 })), h("svg:rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 }), line(40, y(0), 464, y(0)), line(x(0), 16, x(0), 268), h("svg:circle", { class: "mark", cx: x(0), cy: y(0), r: scale, "clip-path": `url(#${clip})` }), h("svg:path", { class: "mark F", d: MARKS.F(x(-1), y(0)) }), h("svg:text", { x: x(-1), y: y(0) + 18, "text-anchor": "middle" }, "−1"), curve(-1, " dashed"), curve(1, ""));
+    const line = (x1, y1, x2, y2) => sv("line", { class: "axis", x1, y1, x2, y2 }), clip = `symobs-clip-${mounted}`;
+    const curve = (sign, more) => sv("path", { class: `curve c0${more}`, "clip-path": `url(#${clip})`, d: pathOf(got.locus.map((p) => (p.includes(null) ? null : p)), (p) => `${x(p[0] / got.parts).toFixed(1)} ${y((sign * p[1]) / got.parts).toFixed(1)}`) });
+    el.locus.replaceChildren(sv("clipPath", { id: clip }, sv("rect", { x: 40, y: 16, width: 424, height: 252 })), sv("rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 }), line(40, y(0), 464, y(0)), line(x(0), 16, x(0), 268), sv("circle", { class: "mark", cx: x(0), cy: y(0), r: scale, "clip-path": `url(#${clip})` }), sv("path", { class: "mark F", d: MARKS.F(x(-1), y(0)) }), sv("text", { x: x(-1), y: y(0) + 18, "text-anchor": "middle" }, "−1"), curve(-1, " dashed"), curve(1, ""));
   }
 
-  // -- begin ------------------------------------------------------------------------------------------------------------
+  // -- begin --
 
   const isEmpty = () => !Object.keys(s.plant).length && s.spec.polynomial === undefined;
   const begin = () => {

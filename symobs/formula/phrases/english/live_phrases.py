@@ -140,6 +140,8 @@ PHRASES: dict[str, str] = {
     "live_claim": "{count} claim",
     "live_claims": "{count} claims",
     "live_pin": "Pin",
+    "live_move_gain": "move {name}",
+    "live_move_poles": "poles for {name}",
     "live_pinned": "Pinned designs, side by side",
     "live_unpin": "Take away {poles}",
     "live_gains": "Gains",

@@ -465,6 +465,54 @@ def test_the_start_names_tasks_and_examples() -> None:
         }  # fmt: skip  # H is L in the letters of one convention
 
 
+@pytest.mark.parametrize("task", sorted(tasks()))
+def test_the_sentence_of_every_task_is_german_on_a_german_page(task: str) -> None:
+    link = asked({"language": "de"}, "begin", task=task)["link"]
+    assert "language=de" in link
+    problem, _ = problem_of(link)
+    german, english = asked(problem), asked({**problem, "language": "en"})
+    assert german["status"] == english["status"] != "bad"
+    assert german["says"][0].isupper()
+    assert german["says"] != english["says"]
+    assert german["cards"] or task in {"lyapunov", "margins"}
+
+
+@pytest.mark.parametrize(
+    ("task", "specification", "moved", "poles"),
+    [
+        # s² + (1 + k₂) s + k₁ and s² + (l₁ + 1) s + (l₁ + l₂)
+        ("state_feedback", {"K": "[6 4]"}, [], {"control_pole": [(-3, 0), (-2, 0)]}),
+        ("observer", {"L": "[1; 1]"}, [], {"observer_pole": [(-1, -1), (-1, 1)]}),
+        ("compensator", {"K": "[6 4]", "observer_poles": "-7, -8"}, ["L"], {"control_pole": [(-3, 0), (-2, 0)]}),
+        ("compensator", {"control_poles": "-7, -8", "L": "[1; 1]"}, ["K"], {"observer_pole": [(-1, -1), (-1, 1)]}),
+        ("compensator", {"K": "[6 4]", "observer_poles": "-7", "observer": "minimal"}, [""], {"control_pole": [(-3, 0), (-2, 0)]}),
+        ("feedforward", {"K": "[6 4]"}, [""], {"control_pole": [(-3, 0), (-2, 0)]}),
+        ("state_feedback", {"poles": "-1, -1"}, ["K"], {}),
+        ("integral_action", {"poles": "-1, -1, -1"}, [""], {}),
+    ],
+)  # fmt: skip
+def test_poles_follow_a_given_gain(
+    task: str, specification: dict[str, str], moved: list[str], poles: dict[str, list[tuple[int, int]]]
+) -> None:
+    problem = {"task": task, "plant": SERVO["plant"], "specification": specification}
+    view, found = asked(problem, "view")["view"], asked(problem)
+    assert [group["gain"] for group in view["sets"]] == moved
+    assert view["given"] == [name for name in "KL" if name in specification]
+    told: dict[str, list[tuple[float, float]]] = {}
+    for mark in found["marks"]:
+        if mark["kind"] not in {"plant", "F"}:
+            told.setdefault(mark["kind"], []).append((float(mark["re"]), float(mark["im"])))
+    assert {kind: sorted(places) for kind, places in told.items()} == poles
+
+
+def test_goals_are_held_against_the_poles_of_a_given_gain() -> None:
+    # K = (1/4, 0) leads to a double pole at −1/2, whose modes settle in 2 ln 50 = 7.82 whatever the observer does
+    specification = {"K": "[1/4 0]", "observer_poles": "-10, -10"}
+    found = asked({**SERVO, "specification": specification}, goal={"settling": "5"})["goal"]["settling"]
+    assert found["met"] is False
+    assert found["value"] == "7.82"
+
+
 def test_poles_of_an_optimal_loop_follow_the_weight() -> None:
     # s^4 + q for the double integrator: for q = 4 the stable roots are -1 ± i.
     plant = {"A": "[0 1; 0 0]", "B": "[0; 1]"}
