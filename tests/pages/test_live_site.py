@@ -9,7 +9,7 @@ import functools
 import json
 import threading
 import zipfile
-from http.server import ThreadingHTTPServer
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -49,7 +49,11 @@ def written_site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(name="site")
 def served_site(folder: Path) -> Iterator[ThreadingHTTPServer]:
-    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Files, directory=folder / "out"))
+    yield from served(Files, folder / "out")
+
+
+def served(kind: type[SimpleHTTPRequestHandler], folder: Path) -> Iterator[ThreadingHTTPServer]:
+    server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(kind, directory=folder))
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05})
     thread.start()
     yield server
@@ -119,6 +123,17 @@ def test_a_question_that_takes_too_long_is_given_up_and_has_a_minute_when_asked_
     assert page.is_hidden(".message")
     page.clock.run_for(2_000)
     page.wait_for_selector(".message:has-text('not decided within 60 s')")
+
+
+def test_the_site_can_be_a_part_of_another_page_without_its_derivation(page: Any, tmp_path: Path) -> None:
+    address = page.url.replace("closed=responses", "closed=page")
+    (tmp_path / "index.html").write_text(f'<iframe src="{address}" width="900" height="700"></iframe>', "utf-8")
+    for other in served(SimpleHTTPRequestHandler, tmp_path):
+        page.goto(f"http://127.0.0.1:{other.server_address[1]}/")
+        frame = page.frame_locator("iframe")
+        frame.locator(".card math").first.wait_for()
+        assert frame.locator(".responses").is_visible()
+        assert frame.locator(".page").is_hidden()
 
 
 def test_the_site_opens_and_answers_when_its_server_is_gone(page: Any, site: ThreadingHTTPServer) -> None:

@@ -541,9 +541,10 @@ export function mount(element, transport, options = {}) {
     renew();
     const again = where || set ? (where ? find(where) : find(set, "set")) : null;
     if (!again || again === active) return;
-    if (active.value !== active.defaultValue) again.value = active.value;
+    const isTyped = active.type === "text";
+    if (isTyped && active.value !== active.defaultValue) again.value = active.value;
     again.focus({ preventScroll: true });
-    again.setSelectionRange?.(active.selectionStart, active.selectionEnd);
+    if (isTyped) again.setSelectionRange(active.selectionStart, active.selectionEnd);
   }
 
   /** Hold nothing any more: what is held belongs to fields and pictures that are built anew. */

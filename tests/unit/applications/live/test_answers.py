@@ -465,6 +465,9 @@ def test_the_start_names_tasks_and_examples() -> None:
         }  # fmt: skip  # H is L in the letters of one convention
 
 
+_MINIMAL = {"observer": "minimal"}
+
+
 @pytest.mark.parametrize("task", sorted(tasks()))
 def test_the_sentence_of_every_task_is_german_on_a_german_page(task: str) -> None:
     link = asked({"language": "de"}, "begin", task=task)["link"]
@@ -485,7 +488,7 @@ def test_the_sentence_of_every_task_is_german_on_a_german_page(task: str) -> Non
         ("observer", {"L": "[1; 1]"}, [], {"observer_pole": [(-1, -1), (-1, 1)]}),
         ("compensator", {"K": "[6 4]", "observer_poles": "-7, -8"}, ["L"], {"control_pole": [(-3, 0), (-2, 0)]}),
         ("compensator", {"control_poles": "-7, -8", "L": "[1; 1]"}, ["K"], {"observer_pole": [(-1, -1), (-1, 1)]}),
-        ("compensator", {"K": "[6 4]", "observer_poles": "-7", "observer": "minimal"}, [""], {"control_pole": [(-3, 0), (-2, 0)]}),
+        ("compensator", {"K": "[6 4]", "observer_poles": "-7", **_MINIMAL}, [""], {"control_pole": [(-3, 0), (-2, 0)]}),
         ("feedforward", {"K": "[6 4]"}, [""], {"control_pole": [(-3, 0), (-2, 0)]}),
         ("state_feedback", {"poles": "-1, -1"}, ["K"], {}),
         ("integral_action", {"poles": "-1, -1, -1"}, [""], {}),
