@@ -32,7 +32,7 @@ def frames(page: Page) -> list[Image.Image]:
     if hit is None or first is None or last is None:
         raise RuntimeError("the page has no poles or no answers")
     x, y = hit["x"] + hit["width"] / 2, hit["y"] + hit["height"] / 2
-    clip = {"x": 0, "y": first["y"] - 6, "width": 900, "height": last["y"] + last["height"] - first["y"] + 12}
+    top, below = first["y"] - 6, last["y"] + last["height"] + 6
     page.mouse.move(x, y)
     page.mouse.down()
     found = []
@@ -41,7 +41,8 @@ def frames(page: Page) -> list[Image.Image]:
         page.mouse.move(x - _WIDE * (1 - cos(angle)), y + _HIGH * sin(angle))
         page.wait_for_timeout(150)
         page.wait_for_selector(_ANSWERED)
-        found.append(Image.open(io.BytesIO(page.screenshot(clip=clip))).convert("RGB"))
+        taken = page.screenshot(clip={"x": 0, "y": top, "width": 900, "height": below - top})
+        found.append(Image.open(io.BytesIO(taken)).convert("RGB"))
     page.mouse.up()
     return found
 

@@ -4,7 +4,7 @@ Run it by `python -m tests.programs.benchmarks`.
 
 Run it in the top folder of the checkout, on a quiet machine, with giac (Debian package `xcas`), `maxima`, gp (`pari-gp`)
 and `qepcad` installed; what is missing is left out.  `--only cart-pole` runs one group, `--repetitions 15` repeats more
-often, `--markdown` prints the table as Markdown.  Each file in `groups/` is a group.
+often, `--write` puts the whole table into docs/measurements.md.  Each file in `groups/` is a group.
 
 Every figure is a median over repetitions in which all subjects take turns, so a ratio compares runs under one load.
 symobs is timed in process from the text of the plant to the checked result, with symbol names no earlier repetition
@@ -28,6 +28,8 @@ from tests.programs.benchmarks.measuring import Settings, markdown, table
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+PAGE = Path(__file__).parents[3] / "docs" / "measurements.md"
+
 
 def groups() -> dict[str, Any]:
     """Return the modules of the groups by their names, in the order of the table."""
@@ -49,8 +51,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--only", choices=known, action="append", help="run this group; may be repeated")
     parser.add_argument("--repetitions", type=int, default=7, help="how often each subject runs (7)")
     parser.add_argument("--limit", type=float, default=60, help="seconds another system may take (60)")
-    parser.add_argument("--markdown", action="store_true", help="print the table as Markdown")
+    parser.add_argument("--write", action="store_true", help="put the table of all groups into docs/measurements.md")
     given = parser.parse_args(arguments)
+    if given.write and given.only:
+        parser.error("--write takes all groups; leave --only out")
     settings = Settings(given.repetitions, given.limit)
     rows = []
     try:
@@ -58,7 +62,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
             print(f"{name} …", file=sys.stderr)
             rows += known[name].rows(settings)
     finally:
-        print((markdown if given.markdown else table)(rows))
+        print(table(rows))
+    if given.write:
+        above, begin, rest = PAGE.read_text("utf-8").partition("<!-- benchmarks -->\n")
+        _, end, below = rest.partition("<!-- end -->\n")
+        PAGE.write_text(f"{above}{begin}\n{markdown(rows)}\n\n{end}{below}", "utf-8")
 
 
 if __name__ == "__main__":

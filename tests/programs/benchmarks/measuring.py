@@ -93,7 +93,7 @@ def table(rows: Sequence[Row]) -> str:
 
 
 def markdown(rows: Sequence[Row]) -> str:
-    """Return the rows as a table in Markdown; figures stand on the right."""
-    sides = ("---", "---:", "---", "---:", "---:", "---:")
-    lines = [HEAD, sides, *(tuple(cell.replace("|", r"\|") for cell in row.cells()) for row in rows)]
+    """Return the rows as a table in Markdown, without what is asked; figures stand on the right."""
+    sides = ("---", "---:", "---", "---:", "---:")
+    lines = [HEAD[:-1], sides, *(tuple(cell.replace("|", r"\|") for cell in row.cells()[:-1]) for row in rows)]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
