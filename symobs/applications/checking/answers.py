@@ -31,7 +31,7 @@ from symobs.problem.expect import factored_table
 # Definitions as students write them: NAME = value, chains of equal values, several of them on a line.
 
 
-_NAME = r"[ \t]*([A-Za-zΑ-Ωα-ω][A-Za-z0-9_.₀-₉]*)((?:[ \t]*\([szt]\))?)[ \t]*(?::=|==?)(?![=<>])"
+_NAME = r"[ \t]*([A-Za-z\u0391-\u03c9][A-Za-z0-9_.\u2080-\u2089]*)((?:[ \t]*\([szt]\))?)[ \t]*(?::=|==?)(?![=<>])"
 
 
 #: What gives a letter its value, or a function of s, z or t: F(s) = 1/s.
@@ -382,10 +382,11 @@ def _of_lines(text: str, where: str) -> Answer:
                 conditions.append(line)
             continue
         value = as_value(defined.value)
-        functions |= {defined.name} if defined.argument else set()
+        is_new = bool(defined.argument) and defined.name not in functions
+        functions |= {defined.name} if is_new else set()
         task, _, name = defined.name.rpartition(".")
         table = values.setdefault(task, {}) if task else values
-        if value and not (in_case and name in table):
+        if value and (is_new or not (in_case and name in table)):
             table[name] = value
         if not task and isinstance(value, str) and _is_relation(name, value):
             steps.append(Step(line if defined.is_chain else f"{name}{defined.argument} = {value}", place))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.applications.audit.auditor import EquationAuditor, printed_entries
 from symobs.applications.audit.differences import as_matrix, wrong_entries
-from symobs.applications.audit.evaluation import Misfit, Unknown, value_of
+from symobs.applications.audit.evaluation import Misfit, Unknown, common, value_of
 from symobs.applications.audit.slips import SearchBudget
 from symobs.applications.checking.answers import Answer, Step, as_value, read_like
 from symobs.applications.checking.handwriting import in_letters, letters_of_entries
@@ -115,6 +115,9 @@ class LineAuditor(EquationAuditor):
         for name in {*letters_of(*members)} - {*self.let}:
             with suppress(Misfit):
                 self._value(SyntaxNode("letter", text=name), reading)
+        for left, right in pairwise(members):  # what is not evaluated is not false
+            with suppress(Misfit):
+                common(self._value(left, reading), self._value(right, reading), reading.environment)
         return all(self.true(left, right) for left, right in pairwise(members))
 
     def defined(self, entry: PrintedEntry) -> tuple[str, Scalar | Matrix] | None:

@@ -7,11 +7,13 @@ its place.  What is rewritten is judged as everything else is.
 from __future__ import annotations
 
 import re
+from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix
 from symobs.formula.expression.names import spellings
 from symobs.formula.notation import GREEK_LETTERS, LETTERS
+from symobs.ground.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -268,14 +270,53 @@ def as_entries(value: Any, count: int) -> Any:
 
 
 def with_commas(value: Any, columns: int) -> Any:
-    """Return rows without commas as they have so many entries, two blanks apart, [a b   a + b], or one, [3 a; a^2]."""
+    """Return rows without commas as they have so many entries: two blanks apart, [a b   a + b], or one, [3 a; a^2].
+
+    So are products in one reading alone, [a^2 2 a]; raises `InputError` with both where there are two.
+    """
     if not isinstance(value, str) or "," in value or not _MATRIX.fullmatch(value.strip()):
         return value
     lines = [row.strip() for row in value.strip()[1:-1].split(";")]
     if columns == 1 and any(re.search(r"[\w)]\s+[^\W\d]", line) for line in lines):
         return _written([[f"({line})"] for line in lines])
     rows = [re.split(r"\s{2,}", line) for line in lines]
-    return _written(rows) if {len(row) for row in rows} == {columns} else value
+    if {len(row) for row in rows} == {columns}:
+        return _written(rows)
+    if {len(line.split()) for line in lines} == {columns}:
+        return value
+    parted = [_parted(line, columns) for line in lines]
+    if max(map(len, parted)) > 1 and all(parted):
+        both = " or ".join(_written([row[min(k, len(row) - 1)] for row in parted]) for k in (0, 1))
+        raise InputError("the blanks have two readings", repair=f"write {both}")
+    return _written([row[0] for row in parted]) if all(parted) else value
+
+
+#: More blanks than these in a row are parted in too many ways.
+_MOST_GAPS = 12
+
+
+def _parted(line: str, columns: int) -> list[list[str]]:
+    """Return the ways, two at most, to part a row into so many entries: a number or a sign after a blank begins one.
+
+    Where every blank parts two entries there is no other way.
+    """
+    words = re.findall(r"(?:\([^()]*\)|[^\s()])+", line)
+    factors = [""]
+    for word in words:  # a sign between blanks stands in a sum
+        if word in {"+", "-", "*", "/"} or factors[-1].endswith((" + ", " - ", " * ", " / ")):
+            factors[-1] += f" {word} " if word in {"+", "-", "*", "/"} else word
+        else:
+            factors.append(word)
+    factors = factors[1:] if not factors[0] else factors
+    gaps = range(1, len(factors))
+    if len(factors) <= columns or len(factors) > _MOST_GAPS:
+        return [factors] if len(factors) == columns else []
+    ways = []
+    for chosen in combinations(gaps, columns - 1):
+        if all(k in chosen or factors[k][0].isalpha() for k in gaps):
+            ends = [0, *chosen, len(factors)]
+            ways.append([" ".join(factors[i:j]) for i, j in pairwise(ends)])
+    return ways[:2]
 
 
 def without_and(value: Any) -> Any:
@@ -415,11 +456,16 @@ def coefficients_of(members: Sequence[str]) -> dict[str, str]:
 
 def with_own_letters(value: Any, values: Mapping[str, Any], known: Collection[str]) -> Any:
     """Return a value with what the answer says of letters that are not the problem's: k1 in [k1, k2] beside k1 = 3."""
+
+    def meant(found: re.Match[str]) -> str:
+        name = found[0]
+        is_own = isinstance(values.get(name), str) and not {name, name.translate(_DIGITS)} & {*known}
+        return f"({values[name]})" if is_own else name
+
     for _ in range(_DEEPEST if isinstance(value, str) else 0):
-        own = {n for n in _OWN.findall(value) if isinstance(values.get(n), str) and not {n, n.translate(_DIGITS)} & known}
-        if not own or len(value) > _LONGEST:
+        before, value = value, _OWN.sub(meant, value)
+        if value == before or len(value) > _LONGEST:
             break
-        value = _OWN.sub(lambda f: f"({values[f[0]]})" if f[0] in own else f[0], value)
     return value
 
 

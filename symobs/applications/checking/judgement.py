@@ -444,10 +444,13 @@ def judge_task(
     declared = names_of(view)
     names = declared if declared is None else {**declared, **dict.fromkeys(symbols, "real")}
     task = _Task(view, names, marking, view.result)
-    each = [
-        Judged(view.standard(letter)[0], letter, "wrong", as_asked(view, letter, value))
-        for letter, value in given.items()
-    ]
+    each, unread = list[Judged](), list[Judged]()
+    for letter, value in given.items():
+        part = Judged(view.standard(letter)[0], letter, "wrong", value)
+        try:
+            each.append(replace(part, given=as_asked(view, letter, value)))
+        except InputError as error:
+            unread.append(_unreadable(part, error))
     asked = {part.name: part for part in each}
     parts: dict[str, Judged] = {}
     if task.right.gains_are_one:
@@ -465,7 +468,7 @@ def judge_task(
             task.own = task.right.following_from(task.gains)
     parts |= _in_coordinates(task, [part for part in each if part.name in task.right.in_coordinates])
     parts |= {name: _judged(task, part) for name, part in asked.items() if name not in parts}
-    return TaskJudgement(tuple(parts[name] for name in asked), task.right, task.own)
+    return TaskJudgement((*(parts[name] for name in asked), *unread), task.right, task.own)
 
 
 def _unreadable(part: Judged, error: SymobsError) -> Judged:

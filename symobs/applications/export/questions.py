@@ -403,7 +403,9 @@ def _exercise(path: Path, asked: Sequence[str], points: Fraction | None) -> Exer
     parts: list[ExportedPart] = []
     wanted = checked.asked(views)
     if not marking.asked:  # whether the pair is observable is asked beside the rank that shows it
-        wanted = [(view, name) for view, field in wanted for name in (("verdict", field) if field == "rank" else (field,))]
+        wanted = [
+            (view, name) for view, field in wanted for name in (("verdict", field) if field == "rank" else (field,))
+        ]
     letters = Counter(field for _, field in wanted)
     for view, field in wanted:
         letter = view.letter_of(field)
