@@ -298,6 +298,16 @@ def test_bounds_are_those_of_the_numbers_of_the_answers() -> None:
     assert outcome({"page": {"fractions": 0}}, stable, "observer", **asked) == "the page has too many fractions"
 
 
+def test_a_compensator_is_stable_where_that_is_asked_for() -> None:
+    # 1/(s^2 - 1) with K = [3 3], L = [6; 10]: F has the denominator s^2 + 9 s + 30.  (s - 1)/(s (s - 2)) has one pole
+    # between its zeros 1 and infinity: no stable compensator stabilises it (Youla, Bongiorno and Lu, 1974).
+    servo = {"A": "[0 1; 1 0]", "B": "[0; 1]", "C": "[1 0]"}
+    never = {"A": "[0 1; 0 2]", "B": "[0; 1]", "C": "[-1 1]"}
+    both = {"control_poles": "-1, -2", "observer_poles": "-3, -3"}
+    assert outcome({"stable_compensator": True}, servo, "compensator", **both) is None
+    assert outcome({"stable_compensator": True}, never, "compensator", **both) == "stable_compensator is not true"
+
+
 def test_cheap_gains_that_the_engine_does_not_find_are_a_bug() -> None:
     problem = {"task": "observer", "plant": {"A": "[0 1; 0 0]", "C": "[1 0]"}, "specification": {"poles": "-1, -1"}}
     assert run({"problem": problem, "constraints": {}, "gains": {"L": [[2], [1]]}})["result"]["reason"] is None
