@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -12,6 +13,9 @@ from symobs.applications.export.questions import exercises
 from symobs.ground.errors import ProblemErrors
 from symobs.tasks.result import render
 from tests.support.paths import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 #: Examples, whose answers are in [expect], and what their pages print in letters or numbers.
 PAGES = {
@@ -63,14 +67,14 @@ def test_right_entries_count_where_the_lecturer_says_so(value: str, credit: Frac
         assert (part.verdict, part.credit) == ("wrong", expected)
 
 
-def test_an_exported_question_does_not_credit_entries(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_an_exported_question_does_not_credit_entries(tmp_path: Path) -> None:
     file = tmp_path / "problem.toml"
     file.write_text(f"{EXPONENTIAL}[marking]\nby_entry = true\n", "utf-8")
     with pytest.raises(ProblemErrors, match="does not credit entries"):
         list(exercises([str(file)]))
 
 
-def test_whether_a_pair_is_observable_is_asked_beside_the_rank(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_whether_a_pair_is_observable_is_asked_beside_the_rank(tmp_path: Path) -> None:
     file = tmp_path / "problem.toml"
     file.write_text('task = "observability"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[0 1]"\n', "utf-8")
     (each,) = exercises([str(file)])
