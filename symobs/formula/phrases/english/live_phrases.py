@@ -268,7 +268,7 @@ PHRASES: dict[str, str] = {
 #: They stand within a sentence, or beside one.
 CONTINUES = (
     "live_detail_full", "live_detail_outline", "live_detail_answer", "live_count_states", "live_count_inputs", "live_count_outputs", "live_fewer", "live_more", "live_as_text", "live_kind", "live_kind_full",
-    "live_kind_minimal", "live_value_of", "live_letter", "live_grid", "live_control_pole", "live_control_poles",
+    "live_kind_minimal", "live_value_of", "live_letter", "live_grid", "live_move_gain", "live_move_poles", "live_control_pole", "live_control_poles",
     "live_observer_pole", "live_observer_poles", "live_pole", "live_drive_state", "live_drive_step", "live_overshoots", "live_peak", "live_goal_settling", "live_goal_overshoot", "live_goal_gain", "live_goal_phase", "live_goal_settling_after_step", "live_goal_overshoot_after_step", "live_met", "live_missed", "live_open", "said_no_goal", "said_no_goal_repair", "live_settles", "live_mode_overshoots", "live_mode_settles", "live_pole_of_plant", "live_pole_of_F", "live_pole_of_loop",
     "live_in_fields", "live_point", "live_point_of", "live_point_stable", "live_point_unstable",
     "live_point_boundary", "live_point_excluded", "live_point_undefined", "live_in_general", "live_rank",
