@@ -66,7 +66,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if given.write:
         above, begin, rest = PAGE.read_text("utf-8").partition("<!-- benchmarks -->\n")
         _, end, below = rest.partition("<!-- end -->\n")
-        PAGE.write_text(f"{above}{begin}\n{markdown(rows)}\n\n{end}{below}", "utf-8")
+        shown = [row for row in rows if not row.work.startswith("region ")]  # their medians are a row
+        PAGE.write_text(f"{above}{begin}\n{markdown(shown)}\n\n{end}{below}", "utf-8")
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,7 @@ _COMMANDS: dict[str, Sequence[str]] = {
 
 def rows(settings: Settings) -> Iterator[Row]:
     """Yield `symobs --help` and `symobs solve` of the servo with output feedback."""
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # an installed module is compiled once
     subjects = {name: lambda arguments=arguments: wall(arguments) for name, arguments in _COMMANDS.items()}
     found = medians(3 * settings.repetitions, subjects)
     against = "import sympy (symobs / SymPy)"
