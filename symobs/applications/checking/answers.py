@@ -158,6 +158,29 @@ VERDICTS = {
 }
 
 
+#: What a plant, or F, has or has not where a verdict on it is asked for.
+_PROPERTIES = {
+    "observability": {"observable", "beobachtbar"},
+    "controllability": {"controllable", "steuerbar"},
+    "detectability": {"detectable", "detektierbar"},
+    "stabilizability": {"stabilizable", "stabilisierbar"},
+    "F_stable": {"stable", "stabil"},
+}
+
+
+_DENIED = re.compile(r"(?:not |nicht |un|in)")
+
+
+def verdict_of(text: str, *asked: str) -> str | None:
+    """Return yes, no or conditional as a text says it of the task or field asked, `not observable`; None where it does not."""
+    word = " ".join(text.replace('"', " ").lower().split())
+    having = {word for name in asked for word in _PROPERTIES.get(name, ())}
+    denied = _DENIED.match(word)
+    if word in having:
+        return "yes"
+    return "no" if denied and word[denied.end() :] in having else VERDICTS.get(word)
+
+
 def typed(text: str) -> str:
     """Return a text with the minus, the spaces and the byte order mark of ASCII."""
     return text.translate(_TYPED)
@@ -399,7 +422,7 @@ def _of_lines(text: str, where: str) -> Answer:
 
 def _is_relation(name: str, value: str) -> bool:
     """Return whether a definition is a relation of a derivation, as a verdict and a region are not."""
-    return name != "stable_if" and value.lower() not in VERDICTS
+    return name != "stable_if" and verdict_of(value, *_PROPERTIES) is None
 
 
 def _lines(text: str, where: str) -> list[tuple[int, str]]:

@@ -22,6 +22,7 @@ from symobs.applications.checking.answers import (
     in_a_line,
     read_like,
     value_of,
+    verdict_of,
 )
 from symobs.applications.checking.handwriting import in_letters, with_commas, without_and
 from symobs.applications.checking.regions import region_verdict
@@ -625,7 +626,7 @@ def _judged(task: _Task, part: Judged) -> Judged:
         return _region(task, part)
     right = task.right.fields.get(name)
     if name == "verdict" or isinstance(right, bool) or (isinstance(right, str) and right in VERDICTS):
-        word = VERDICTS.get(str(given).strip().strip('"').lower())
+        word = verdict_of(str(given), task.view.task if name == "verdict" else name)
         if word is None:
             error = InputError(f'"{shown(str(given), 40)}" is no verdict', repair="write yes, no or conditional")
             return _unreadable(part, error)

@@ -131,3 +131,9 @@ def test_a_line_with_the_inverse_of_zero_is_no_fault_of_ours() -> None:
     )
     found = LOOP.report(f"K = [4 3]\n{line}").lines[-1]
     assert (found.verdict, "is no time to integrate over" in found.reason) == ("false", True)
+
+
+@tabled
+def test_a_property_answers_whether_it_holds(task: str, answer: str, verdict: str) -> None:
+    seen = problem(task, 'A = "[0 1; 0 -1]"\nC = "[0 1]"', "verdict")  # 0 is not seen
+    assert verdicts(seen, answer) == {"verdict": verdict}
