@@ -42,13 +42,14 @@ _ROOT = re.compile(r"\\sqrt\s*\{([^{}]*)\}")
 _ABOVE, _BELOW = re.compile(r"\^\s*\{([^{}]*)\}"), re.compile(r"_\s*\{([^{}]*)\}")
 _SIGNS = {"cdot": "*", "times": "*", "div": "/", "top": "T", "implies": "=>", "land": " and ", "wedge": " and "}
 _SIGNS |= {"lor": " or ", "vee": " or ", "lt": "<", "gt": ">", "ne": "!=", "neq": "!="}
-_SIGNS |= {"le": "<=", "leq": "<=", "ge": ">=", "geq": ">="}
+_SIGNS |= {"approx": "≈", "le": "<=", "leq": "<=", "ge": ">=", "geq": ">="}
 
 
 def without_latex(text: str) -> str:
     """Return a text whose LaTeX is written as in problem files: [1, 2; 3, 4], (a)/(b), exp(-t), omega_0."""
     if not re.search(r"\\[A-Za-z]|[\^_]\{", text):
         return text
+    text = re.sub(r"\\text\{[^{}]*\}\s*\\qquad", "", text)  # the words before a display
     text = re.sub(r"\\bar\s*\{?\s*([A-Za-z])\s*\}?", r"\1_bar", _SPACES.sub(" ", text))
     for _ in range(_DEEPEST):
         before = text
