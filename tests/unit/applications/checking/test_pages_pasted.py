@@ -102,10 +102,14 @@ def test_what_is_not_evaluated_is_not_false(line: str, verdict: str) -> None:
 @pytest.mark.parametrize(
     ("letter", "display"),
     [
-        ("L", r"\text{hence}\qquad L=\begin{bmatrix}-\frac{80539}{49}\\-\frac{832340}{49}\\60\end{bmatrix}\approx\begin{bmatrix}-1643.7\\-16987\\60\end{bmatrix}"),
+        (
+            "L",
+            r"\text{hence}\qquad L=\begin{bmatrix}-\frac{80539}{49}\\-\frac{832340}{49}\\60\end{bmatrix}"
+            r"\approx\begin{bmatrix}-1643.7\\-16987\\60\end{bmatrix}",
+        ),
         ("K_d", r"\text{which is satisfied by}\qquad K_{\mathrm d}=\begin{bmatrix}0&0&0&0\end{bmatrix}"),
     ],
-)  # fmt: skip
+)
 def test_words_and_decimals_beside_a_display_are_not_its_value(letter: str, display: str) -> None:
     checked = Checked.of((ROOT / "worked_examples" / "cart_tracking.toml").read_text("utf-8"))
     verdicts = {part.letter: part.verdict for part in checked.report(f"{display}\n").parts}
