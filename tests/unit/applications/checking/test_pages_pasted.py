@@ -104,8 +104,10 @@ def test_what_is_not_evaluated_is_not_false(line: str, verdict: str) -> None:
     [
         (
             "L",
-            r"\text{hence}\qquad L=\begin{bmatrix}-\frac{80539}{49}\\-\frac{832340}{49}\\60\end{bmatrix}"
-            r"\approx\begin{bmatrix}-1643.7\\-16987\\60\end{bmatrix}",
+            (
+                r"\text{hence}\qquad L=\begin{bmatrix}-\frac{80539}{49}\\-\frac{832340}{49}\\60\end{bmatrix}"
+                r"\approx\begin{bmatrix}-1643.7\\-16987\\60\end{bmatrix}"
+            ),
         ),
         ("K_d", r"\text{which is satisfied by}\qquad K_{\mathrm d}=\begin{bmatrix}0&0&0&0\end{bmatrix}"),
     ],
