@@ -31,7 +31,7 @@ from symobs.problem.expect import factored_table
 # Definitions as students write them: NAME = value, chains of equal values, several of them on a line.
 
 
-_NAME = r"[ \t]*([A-Za-z\u0391-\u03c9][A-Za-z0-9_.\u2080-\u2089]*)((?:[ \t]*\([szt]\))?)[ \t]*(?::=|==?)(?![=<>])"
+_NAME = r"[ \t]*([A-Za-z\u0391-\u03c9][A-Za-z0-9_.\u2080-\u2089]*)((?:[ \t]*\([szt]\))?)[ \t]*(?::=|==?|≈)(?![=<>])"
 
 
 #: What gives a letter its value, or a function of s, z or t: F(s) = 1/s.

@@ -116,3 +116,11 @@ def test_words_and_decimals_beside_a_display_are_not_its_value(letter: str, disp
     checked = Checked.of((ROOT / "worked_examples" / "cart_tracking.toml").read_text("utf-8"))
     verdicts = {part.letter: part.verdict for part in checked.report(f"{display}\n").parts}
     assert verdicts[letter] == "right"
+
+
+@pytest.mark.parametrize(("marking", "verdict"), [("", "wrong"), ('decimals = "accept"\ndigits = 4\n', "right")])
+def test_a_value_after_about_is_a_rounded_one(marking: str, verdict: str) -> None:
+    text = (ROOT / "worked_examples" / "cart_pendulum_feedback.toml").read_text("utf-8")
+    report = Checked.of(f"{text}\n[marking]\n{marking}").report("K ≈ [-2.4490, -48.229, -15.102, -5.1020]\n")
+    assert [part.verdict for part in report.parts if part.letter == "K"] == [verdict]
+    assert report.lines == ()
