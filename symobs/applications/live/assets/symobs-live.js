@@ -645,8 +645,8 @@ export function mount(element, transport, options = {}) {
 
   /** Let a gain be moved in the place of its poles, or these again. */
   function give(name) {
+    if (!view || isOld("answer")) return;
     const group = view.sets.find((g) => g.gain === name);
-    if (isOld("answer")) return;
     if (group) s.spec[name] = matrix(answer.result[name].map((row) => row.map((entry) => entry.replace(/\*\*/g, "^"))));
     delete s.spec[group?.key ?? name];
     if (group) problemChanged(); else turn(s.task);
