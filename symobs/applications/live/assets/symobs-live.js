@@ -1045,7 +1045,7 @@ export function mount(element, transport, options = {}) {
     if (el.notes.textContent !== (got.note ?? "")) el.notes.textContent = got.note ?? "";
     drawCards(got);
     const others = (names, words) => names.map((name) => h("button", { class: "quiet", "data-where": `give.${name}`, onclick: () => give(name) }, w(words, { name })));
-    keepingFocus(() => el.gains.replaceChildren(...others(view.sets.map((g) => g.gain).filter((name) => got.result[name]), "move_gain"), ...others(view.given, "move_poles")));
+    if (view) keepingFocus(() => el.gains.replaceChildren(...others(view.sets.map((g) => g.gain).filter((name) => got.result[name]), "move_gain"), ...others(view.given, "move_poles")));
     drawGoals();
     if (!el.cases.hidden) drawCases(got);
     if (!el.responses.hidden) {
