@@ -168,6 +168,28 @@ def test_levels_are_switched_without_a_script(chromium: Any, files: Path) -> Non
     context.close()
 
 
+#: Signs beside mathematics that stand on another line than it.
+_PARTED = """() => [...document.querySelectorAll('p math')].flatMap(math => [math.previousSibling, math.nextSibling].filter(text => {
+  const at = text === math.previousSibling ? text?.length - 1 : 0;
+  if (text?.nodeType !== 3 || !/[(\\[),.;:\\]]/.test(text.data[at])) return false;
+  const sign = document.createRange();
+  sign.setStart(text, at);
+  sign.setEnd(text, at + 1);
+  const [a, b] = [sign.getBoundingClientRect(), math.getBoundingClientRect()];
+  return a.bottom < b.top || a.top > b.bottom;
+}).map(() => math.parentNode.textContent))"""
+
+
+@pytest.mark.slow
+def test_no_line_begins_or_ends_between_mathematics_and_a_sign(chromium: Any, files: Path) -> None:
+    page = chromium.new_page()
+    page.goto((files / "page.html").as_uri())
+    for width in range(320, 900, 20):
+        page.set_viewport_size({"width": width, "height": 800})
+        assert page.evaluate(_PARTED) == [], width
+    page.close()
+
+
 @pytest.mark.slow
 def test_every_button_copies_what_tex_typesets(
     chromium: Any, files: Path, require_tool: Callable[[str], str], tmp_path: Path

@@ -129,6 +129,15 @@ _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff\ud800-\udfff\u20
 _OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
 
 
+#: Mathematics with the signs that stand at it, between which browsers would break a line.
+_WITH_SIGNS = re.compile(r"[(\[]*<math>(?:(?!</math>).)*</math>[)\],.;:]*")
+
+
+def _whole(text: str) -> str:
+    """Return mathematics and its signs on one line."""
+    return text if text.startswith("<") and text.endswith(">") else f'<span class="whole">{text}</span>'
+
+
 _ROOTS = RootGlyphs(
     square_root=lambda inside: f"<msqrt>{inside}</msqrt>",
     plus_minus="<mo>±</mo>",
@@ -316,7 +325,7 @@ class HtmlWriter:
                 self.printer.keep_time(time)
                 if self.latex is not None:
                     self.latex.keep_time(time)
-                return self._heading(number, self.sentence(inlines))
+                return self._heading(number, "".join(map(self._inline, inlines)))
             case Paragraph(inlines):
                 return f"<p>{self.sentence(inlines)}</p>"
             case Display(relations, boxed, closing, number):
@@ -351,7 +360,8 @@ class HtmlWriter:
 
     def sentence(self, inlines: Inlines) -> str:
         """Return running text, words escaped and mathematics as MathML."""
-        return "".join(self._inline(part) for part in inlines)
+        text = "".join(map(self._inline, inlines))
+        return _WITH_SIGNS.sub(lambda found: _whole(found[0]), text)
 
     def _inline(self, part: Inline) -> str:
         if isinstance(part, str):
