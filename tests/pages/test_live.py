@@ -981,6 +981,19 @@ def test_nothing_overflows(opened: Callable[..., Opened], state: str, width: int
     assert len(set(live.page.screenshot())) > 200
 
 
+def test_an_answer_shows_its_line_in_the_derivation(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    live.wait_for("document.querySelector('.html math')")
+    live.page.click('.card[data-name="L"]')
+    seen = "[...document.querySelectorAll('.html details[open] math')].filter(m => m.getBoundingClientRect().height).length"
+    assert live.page.evaluate(seen) == 0  # the outline is closed
+    live.page.get_by_role("button", name="Show the line of L in the derivation").click()
+    assert live.page.evaluate(seen) > 0
+    live.wait_for("document.getAnimations().length === 1")
+    marked = live.page.evaluate("document.getAnimations()[0].effect.target.textContent")
+    assert live.page.text_content('.card[data-name="L"] math') in marked
+
+
 _CONTRAST = """() => {
   const rgb = c => { const d = document.createElement('canvas').getContext('2d'); d.fillStyle = c; d.fillRect(0, 0, 1, 1);
     return [...d.getImageData(0, 0, 1, 1).data].slice(0, 3); };

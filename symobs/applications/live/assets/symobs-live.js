@@ -231,7 +231,7 @@ export function mount(element, transport, options = {}) {
     el.plant = h("section", { class: "panel plant", "aria-label": w("problem") });
     el.reopen = h("span", { class: "reopen" });
     const button = (name, sign, act) => (el[name] = h("button", { class: "quiet", title: w(name), "aria-label": w(name), onclick: act }, sign));
-    el.copy = h("button", { class: "copy", onclick: copyLink }, w("copy_link"));
+    el.copy = h("button", { class: "copy", onclick: () => copy(options.link ? options.link(encoded(s)) : encoded(s), el.copy, w("copy_link")) }, w("copy_link"));
     const save = ["toml", "python", "latex", "html"].map((as) => h("button", { onclick: () => take(as) }, w(`save_${as}`)));
     root.replaceChildren(
       h("header", { class: "bar" }, h("h1", {}, "symobs"), el.task, el.examples, el.titles, button("undo", "↶", () => walk(-1)), button("redo", "↷", () => walk(1)), button("reset", "⟲", () => shift(origin)), el.reopen, h("span", { class: "space" }), el.language, el.copy, h("details", { class: "menu" }, h("summary", {}, w("save")), h("div", {}, save))),
@@ -375,7 +375,7 @@ export function mount(element, transport, options = {}) {
       announce();
       reachable();
       if (!start) learn();
-      if (!open("page") || running || isOld("answer")) return;
+      if (!open("page") || running || isOld("answer") || (!isOld("page") && el.html.querySelector("math"))) return;
       aborted.abort();
       aborted = new AbortController();
       const signal = aborted.signal, at = free(), asked = question("page");
@@ -401,6 +401,16 @@ export function mount(element, transport, options = {}) {
     heading.replaceWith(part);
     while (part.nextSibling && !part.nextSibling.matches?.("h3, .references")) part.append(part.nextSibling);
     part.prepend(h("summary", {}, heading));
+  }
+
+  /** Show the line of the derivation that gives an answer: the last with its value, else the last with its name. */
+  function trace(card) {
+    if (!open("page")) fold("page", false);
+    const told = card.querySelector("math").textContent, lines = isOld("page") ? [] : [...el.html.querySelectorAll("math")];
+    const line = lines.findLast((m) => m.textContent.includes(told)) ?? lines.findLast((m) => m.textContent.startsWith(told.replace(/=.*/, "="))) ?? el.page;
+    for (let part = line; (part = part.parentNode.closest("details"));) part.open = true;
+    line.scrollIntoView({ block: "center" });
+    line.animate({ outline: ["3px solid", "3px solid transparent"] }, 2500);
   }
 
   /** Let the keyboard reach formulas that are wider than their place, to scroll them. */
@@ -492,14 +502,13 @@ export function mount(element, transport, options = {}) {
     }
   }
 
-  async function copyLink() {
-    const link = options.link ? options.link(encoded(s)) : encoded(s);
+  async function copy(told, button, label) {
     try {
-      await navigator.clipboard.writeText(link);
-      el.copy.textContent = w("copied");
-      setTimeout(() => { el.copy.textContent = w("copy_link"); }, 1500);
+      await navigator.clipboard.writeText(told);
+      button.textContent = w("copied");
+      setTimeout(() => { button.textContent = label; }, 1500);
     } catch {
-      const field = h("input", { value: link, "aria-label": w("link"), readonly: true });
+      const field = h("input", { value: told, "aria-label": label, readonly: true });
       el.message.hidden = false;
       el.message.replaceChildren(w("copy_this"), field);
       field.select();
@@ -1061,11 +1070,7 @@ export function mount(element, transport, options = {}) {
   function drawCards(got) {
     const names = got.cards.map((c) => c.name);
     if ([...el.list.children].map((c) => c.dataset.name).join() !== [...names, "conditions"].join()) {
-      el.list.replaceChildren(...got.cards.map((card) => h("article", { class: "card symobs", "data-name": card.name }, h("div", { class: "display" }), h("button", { class: "quiet tex", title: w("copy_latex"), "aria-label": w("copy_latex_of", card), onclick: async (e) => {
-        const b = e.currentTarget;
-        try { await navigator.clipboard.writeText(answer.cards.find((c) => c.name === card.name)?.latex ?? ""); b.textContent = w("copied"); } catch { b.textContent = w("refused"); }
-        setTimeout(() => { b.textContent = "TeX"; }, 1200);
-      } }, "TeX"))), h("article", { class: "conditions symobs", "data-name": "conditions" }));
+      el.list.replaceChildren(...got.cards.map((card) => h("article", { class: "card symobs", "data-name": card.name }, h("div", { class: "display" }), h("button", { class: "quiet tex", title: w("copy_latex"), "aria-label": w("copy_latex_of", card), onclick: (e) => copy(e.target.parentNode.firstChild.dataset.latex, e.target, "TeX") }, "TeX"), h("button", { class: "quiet tex", title: w("show_line"), "aria-label": w("show_line_of", card), onclick: (e) => trace(e.target.parentNode) }, "↓"))), h("article", { class: "conditions symobs", "data-name": "conditions" }));
     }
     got.cards.forEach((card, k) => {
       const box = el.list.children[k].firstChild;
