@@ -169,7 +169,8 @@ def test_levels_are_switched_without_a_script(chromium: Any, files: Path) -> Non
 
 
 #: Signs beside mathematics that stand on another line than it.
-_PARTED = """() => [...document.querySelectorAll('p math')].flatMap(math => [math.previousSibling, math.nextSibling].filter(text => {
+_PARTED = """() => [...document.querySelectorAll('p math')].flatMap(math => [math.previousSibling, math.nextSibling]
+.filter(text => {
   const at = text === math.previousSibling ? text?.length - 1 : 0;
   if (text?.nodeType !== 3 || !/[(\\[),.;:\\]]/.test(text.data[at])) return false;
   const sign = document.createRange();
