@@ -524,14 +524,15 @@ def test_a_reader_of_the_screen_finds_its_way(opened: Callable[..., Opened], sta
     assert len(set(labels)) == len(labels)
 
 
-def test_the_gains_stand_beside_what_is_moved_on_a_phone(opened: Callable[..., Opened]) -> None:
+@pytest.mark.parametrize(("width", "height"), [(320, 640), (1180, 720)])
+def test_the_gains_stand_beside_what_is_moved(opened: Callable[..., Opened], width: int, height: int) -> None:
     live = opened(SERVO)
-    live.page.set_viewport_size({"width": 320, "height": 640})
+    live.page.set_viewport_size({"width": width, "height": height})
     live.page.locator('[data-handle="control_poles.0"] .hit').scroll_into_view_if_needed()
     for place in ('[data-handle="control_poles.0"]', '.card[data-name="K"]', '.card[data-name="L"]'):
         box = live.page.locator(place).first.bounding_box()
         assert box["y"] >= 0, place
-        assert box["y"] + box["height"] <= 640, place
+        assert box["y"] + box["height"] <= height, place
 
 
 def test_a_bad_entry_is_said_at_its_field(opened: Callable[..., Opened]) -> None:
