@@ -28,9 +28,9 @@ _ANSWERED = ".symobs-live:not(.stale):not(.busy)"
 def frames(page: Page) -> list[Image.Image]:
     """Return the page after each step of the drag, answered."""
     hit = page.locator("[data-handle] .hit").first.bounding_box()
-    first, last = (page.locator(f".panel.{name}").bounding_box() for name in ("plane", "cards"))
+    first, last = (page.locator(f".panel.{name}").bounding_box() for name in ("plane", "responses"))
     if hit is None or first is None or last is None:
-        raise RuntimeError("the page has no poles or no answers")
+        raise RuntimeError("the page has no poles or no responses")
     x, y = hit["x"] + hit["width"] / 2, hit["y"] + hit["height"] / 2
     top, below = first["y"] - 6, last["y"] + last["height"] + 6
     page.mouse.move(x, y)
