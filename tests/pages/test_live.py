@@ -496,6 +496,15 @@ def test_the_keyboard_alone_moves_poles(opened: Callable[..., Opened]) -> None:
     assert live.latex("L") == r"L=\frac{1}{3}\begin{bmatrix}28\\28\end{bmatrix}"  # 31/3 − 1, 56/3 − 28/3
 
 
+def test_poles_are_moved_as_engineers_write_them_and_written_without_a_factor_of_one(
+    opened: Callable[..., Opened],
+) -> None:
+    live = opened(SERVO.replace("observer=-10, -10", "observer=-5+j1/2, -5-j1/2"))
+    live.page.locator('[data-handle="observer_poles.0"]').focus()
+    live.page.keyboard.press("ArrowUp")
+    assert live.poles("observer_poles") == "-5+i, -5-i"
+
+
 def test_everything_that_takes_the_focus_has_a_name(opened: Callable[..., Opened]) -> None:
     live = opened(CASES)
     names = live.page.evaluate(

@@ -60,7 +60,7 @@ function parts(source) {
 /** Read poles: handles {re, im}, a pair once, and texts that no handle can hold. @param {string} source */
 function handles(source) {
   const waiting = parts(source).map((entry) => {
-    const plain = entry.replace(/\s+/g, "").replace(/−/g, "-");
+    const plain = entry.replace(/\s+/g, "").replace(/−/g, "-").replace(/[ij]\*?([\d./]+)$/, "$1i");
     const real = rational(plain);
     if (real) return { re: real, im: [0, 1] };
     const found = /^([+-]?[\d./]+(?=[+-]))?([+-]?[\d./]*)\*?[ij]$/.exec(plain);
@@ -80,12 +80,14 @@ function handles(source) {
   return kept;
 }
 
+const imaginary = (im, space = "") => `${text(im)}${space}i`.replace(/^(-?)1 ?i$/, "$1i");
+
 function written(p) {
   if (p.raw) return p.raw;
-  if (!p.pair) return p.im[0] ? `${p.re[0] ? text(p.re) : ""}${p.im[0] > 0 && p.re[0] ? "+" : ""}${text(p.im)}i` : text(p.re);
+  if (!p.pair) return p.im[0] ? `${p.re[0] ? text(p.re) : ""}${p.im[0] > 0 && p.re[0] ? "+" : ""}${imaginary(p.im)}` : text(p.re);
   if (!p.im[0]) return `${text(p.re)}, ${text(p.re)}`;
   const re = p.re[0] ? text(p.re) : "";
-  return `${re}${re ? "+" : ""}${text(p.im)}i, ${re}-${text(p.im)}i`;
+  return `${re}${re ? "+" : ""}${imaginary(p.im)}, ${re}-${imaginary(p.im)}`;
 }
 
 const poles = (list) => list.map(written).join(", ");
@@ -827,7 +829,7 @@ export function mount(element, transport, options = {}) {
       onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) { before = JSON.stringify(sets); drawPlane(); } },
     }, places.map(glyph));
     const [x, y] = places[0], right = x < 250;
-    const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${text(p.im)} i` : text(p.re))];
+    const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${imaginary(p.im, " ")}` : text(p.re))];
     if (said?.damping && p.pair) lines.push(`ζ = ${pretty(said.damping)}, ${said.exact}`);
     if (said?.overshoot) lines.push(w("mode_overshoots", { percent: pretty(said.overshoot) }));
     if (said?.settles) lines.push(w("mode_settles", { time: pretty(said.settles) }));
