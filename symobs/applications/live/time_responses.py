@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
 from math import ceil, exp, isqrt, log, log10, pi
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 #: States are enclosed in these parts; a response is rounded from them to coarser ones.
 _FINE = 10**15
 #: The slowest mode has fallen to e⁻⁶ at the end; one that grows has grown to e³.
-_TIMES, _GROWN = 6.0, 3.0
+_TIMES, _GROWN, _LONGER = 6.0, 3.0, Fraction(3, 2)
 _LONGEST = Fraction(10**6)
 #: Thousandths of the height of the picture, or finer.
 _COARSE, _FINEST = 3, 9
@@ -91,17 +92,34 @@ def _converges(loop: Matrix, *, discrete: bool) -> bool:
 
 
 def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
-    """Return the responses of a design, those of the input apart; raises `NoResponse` or, for what was asked, `InputError`."""
-    signals = _signals(result, asked)
-    end = _end(signals.loop, asked.end, discrete=result.plant.is_discrete)
-    if result.plant.is_discrete:
+    """Return the responses of a design, those of the input apart; raises `NoResponse` or, for what was asked, `InputError`.
+
+    Where modes beside the slowest one add up, so that a response that converges has not settled by the usual end, it is
+    drawn for half as long again.
+    """
+    signals, discrete = _signals(result, asked), result.plant.is_discrete
+    end = _end(signals.loop, asked.end, discrete=discrete)
+    found = _drawn(signals, end, asked, discrete=discrete)
+    lines = found["lines"] + found.get("effort", {}).get("lines", [])
+    is_open = any("last" in line and "settles" not in line for line in lines)
+    if asked.end is None and is_open and _converges(signals.loop, discrete=discrete):
+        later = Fraction(min(ceil(end * _LONGER), _SAMPLES)) if discrete else rounded_up(float(end * _LONGER))
+        if end < later <= _LONGEST:
+            with suppress(NoResponse):  # fast beside it
+                found = _drawn(signals, later, asked, discrete=discrete)
+    return found
+
+
+def _drawn(signals: Signals, end: Fraction, asked: Responses, *, discrete: bool) -> dict[str, Any]:
+    """Return the responses up to an instant."""
+    if discrete:
         last = int(end)
         values = _stepped(signals, 2 * last + 1)
         every, seen, behind = 1, [line[: last + 1] for line in values], [line[last:] for line in values]
     else:
         every, (seen, behind) = 2, _enclosed(signals, end, asked.count)
     told = list(zip(signals.rows, seen, behind, signals.finals, strict=True))
-    head = {"end": str(end), "discrete": result.plant.is_discrete, "step": asked.step}
+    head = {"end": str(end), "discrete": discrete, "step": asked.step}
     effort = [each for each in told if each[0][0] == "u"]
     found = head | _picture([each for each in told if each[0][0] != "u"], end, every)
     return found | ({"effort": head | _picture(effort, end, every)} if effort else {})

@@ -264,6 +264,19 @@ def test_goals_are_held_against_poles_and_gains() -> None:
     assert {name: each["met"] for name, each in told.items()} == {"settling": False, "overshoot": True}
     assert float(told["overshoot"]["value"]) == pytest.approx(100 * (max(heights) - 1), abs=6e-3)
     assert float(told["settling"]["value"]) == pytest.approx(late, rel=0.01)
+    # modes close to each other have not settled where the slowest one alone has: K = (65/4, 7), L = (19, 81)
+    told = asked(
+        {**SERVO, "specification": {**poles, "control_poles": "-4+i/2, -4-i/2", "observer_poles": "-10, -10"}},
+        goal={"settling": "1.6", "overshoot": "15"},
+        courses={"step": True},
+    )["goal"]
+    loop = np.array([[0, 1, 0, 0], [0, -1, -65 / 4, -7], [19, 0, -19, 1], [81, 0, -81 - 65 / 4, -8]])
+    system = (loop, np.array([[0], [0], [-19], [-81]]), np.array([[1, 0, 0, 0]]), np.array([[0]]))
+    times, heights = step_response(system, T=np.linspace(0, 6, 120_001))
+    late = times[np.nonzero(abs(heights - 1) > max(abs(heights - 1)) / 50)[0][-1]]
+    assert {name: each["met"] for name, each in told.items()} == {"settling": False, "overshoot": True}
+    assert float(told["overshoot"]["value"]) == pytest.approx(100 * (max(heights) - 1), abs=6e-2)
+    assert float(told["settling"]["value"]) == pytest.approx(late, rel=0.01)
     # where a mode grows nothing settles, and where the peak is an undershoot or the final value 0 nothing is read off
     double: dict[str, Any] = {"task": "feedforward", "plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[1 0]"}}
     lag = {"A": "[0 1; -1 -1]", "B": "[0; 1]", "C": "[0 1]"}
