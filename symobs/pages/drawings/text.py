@@ -116,9 +116,8 @@ def _poles(picture: PoleMap, printer: TextPrinter) -> str:
 def _responses(picture: TimeResponse, printer: TextPrinter) -> str:
     """Return the grid of responses, a character for each with a legend above."""
     grid = _grid(picture.window, lambda _x, _y: " ")
-    zero = int(picture.window[1][1] / (picture.window[1][1] - picture.window[1][0]) * _ROWS)
     if picture.window[1][0] < 0 < picture.window[1][1]:
-        grid[min(zero, _ROWS - 1)] = ["┈"] * _COLUMNS
+        grid[_row(picture.window[1], Fraction(0))] = ["┈"] * _COLUMNS
     marks = list(zip(picture.responses, _CHARACTERS, strict=False))
     for response, mark in reversed(marks):
         for place in picture.points(response):
@@ -136,32 +135,35 @@ def _grid(window: tuple[Interval, Interval], character: Callable[[float, float],
 
 
 def _put(grid: list[list[str]], window: tuple[Interval, Interval], place: Place, character: str) -> None:
-    (left, right), (bottom, top) = window
-    column = int((place[0] - left) / (right - left) * _COLUMNS)
-    row = int((top - place[1]) / (top - bottom) * _ROWS)
-    if left <= place[0] <= right and bottom <= place[1] <= top:
-        grid[min(row, _ROWS - 1)][min(column, _COLUMNS - 1)] = character
+    across, upwards = window
+    if across[0] <= place[0] <= across[1] and upwards[0] <= place[1] <= upwards[1]:
+        grid[_row(upwards, place[1])][_column(across, place[0])] = character
+
+
+def _column(across: Interval, place: Fraction) -> int:
+    return min(int((place - across[0]) / (across[1] - across[0]) * _COLUMNS), _COLUMNS - 1)
+
+
+def _row(upwards: Interval, place: Fraction) -> int:
+    return min(int((upwards[1] - place) / (upwards[1] - upwards[0]) * _ROWS), _ROWS - 1)
 
 
 def _framed(
     grid: list[list[str]], window: tuple[Interval, Interval], names: Sequence[Formula], printer: TextPrinter
 ) -> str:
-    """Return the rows with axes, their names and the ends of the window."""
-    (left, right), (bottom, top) = window
+    """Return the rows with axes, their names and round numbers."""
     first, second = ([printer.inline(name) for name in names] + [""])[:2]
-    low, high, start, end = (printer.language.decimal(_short(value)) for value in (bottom, top, left, right))
-    margin = max(len(low), len(high))
+    below, beside = (
+        {find(ends, Fraction(value)): printer.language.decimal(text) for value, text in ticks(*map(float, ends))}
+        for find, ends in zip((_column, _row), window, strict=True)
+    )
+    margin = max(map(len, beside.values()))
     lines = [f"{' ' * margin} {second}"] if second else []
     for row, characters in enumerate(grid):
-        label = {0: high, _ROWS - 1: low}.get(row, "")
-        lines.append(f"{label:>{margin}} │{''.join(characters)}")
-    ends = f"{start}{end:>{_COLUMNS - len(start)}}"
-    return "\n".join([*lines, f"{' ' * margin} └{'─' * _COLUMNS} {first}", f"{' ' * margin}  {ends}"])
-
-
-def _short(value: Fraction) -> str:
-    """Return a number in few characters."""
-    return f"{float(value):.4g}"
+        lines.append(f"{beside.get(row, ''):>{margin}} {'┤' if row in beside else '│'}{''.join(characters)}")
+    bottom = "".join("┬" if column in below else "─" for column in range(_COLUMNS))
+    numbers = (f"{' ' * margin}  {row}" for row in _rows(below, _COLUMNS))
+    return "\n".join([*lines, f"{' ' * margin} └{bottom} {first}", *numbers])
 
 
 # -- the line ---------------------------------------------------------------------------------------------------------

@@ -29,6 +29,7 @@ from tests.kit import tabled
 from tests.support.problems.steps import document
 from tests.support.regions import drawn_by_hand as hand
 from tests.support.regions.drawn_by_hand import ALL
+from tests.support.tampering.mutations import lines_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -155,14 +156,26 @@ def test_a_terminal_shows_a_sketch(name: str) -> None:
     assert any(mark in line for line in shown for mark in "#━x")
 
 
+def test_the_numbers_beside_a_sketch_are_round_and_stand_at_their_places() -> None:
+    """x₁ = (1 + 2e⁻ᵗ − e⁻²ᵗ)/2 falls from 1 to 1/2, x₂ = e⁻²ᵗ − e⁻ᵗ begins at 0."""
+    plant = symobs.StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 0]")
+    shown = str(symobs.response(plant, initial="[1; 0]", input="1").to("text"))
+    beside = dict(re.findall(r"^ +(\S+) ┤(.*)$", shown, re.MULTILINE))
+    assert list(beside) == ["1.0", "0.5", "0"]
+    assert [beside[number][place] for number, place in (("1.0", 0), ("0.5", -1), ("0", 0))] == ["*", "*", "o"]
+    ((axis, numbers),) = re.findall(r"^ +└(\S+) t\n +(.*)$", shown, re.MULTILINE)
+    assert axis.count("┬") == len(numbers.split())
+    assert [float(number) for number in numbers.split()] == [0, 2, 4, 6]
+
+
 @tabled
 def test_a_line_is_drawn_as_it_is(last: str, line: str) -> None:
     """Both are stable where h k < 1, but on h = 0 s² + s + 1 is stable and s² + s is not."""
     result = symobs.stability_region(polynomial=f"s^2 + (1 - h k) s + {last}", parameters=("h", "k"))
     shown = str(result.to("text"))
-    rows = re.findall(r" │([#.]{41})$", shown, re.MULTILINE)
-    top, bottom = (float(end) for end in re.findall(r"^ *([-.\d]+) │[#.]", shown, re.MULTILINE))
-    left, right = map(float, re.findall(r"─ h\n +(\S+) +(\S+)\n", shown)[0])
+    rows = re.findall(r" [│┤]([#.]{41})$", shown, re.MULTILINE)
+    (plot,) = (line.step for line in lines_of(result.derivation) if isinstance(line.step, Plot))
+    (left, right), (bottom, top) = (map(float, ends) for ends in plot.picture.window)
     assert len(rows) == 17
     for number, row in enumerate(rows):
         k = top + (bottom - top) * (number + 0.5) / 17
