@@ -54,6 +54,13 @@ def test_a_horizon_of_no_length_is_no_case() -> None:
     assert "Case" not in text_of(design)
 
 
+def test_no_estimate_where_the_rank_is_smaller_for_some_parameters_still() -> None:
+    """The second state alone is measured, with a factor b: rank [0 b; 0 0] is 1, and 0 for b = 0."""
+    for sign, words in (("real", "for no values is it larger"), ("positive", "Here rank")):
+        plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[0 b]", symbols={"b": sign})
+        assert words in text_of(symobs.initial_state_covariance(plant, Q="1", R="1", horizon="1"))
+
+
 # -- gains ------------------------------------------------------------------------------------------------------------
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import symobs
 from symobs.exact import EIGENVALUE, Complex, Matrix, Scalar
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
     from symobs.system.conditions import Condition
 
 
+_T = TypeVar("_T")
+
 #: The keywords for which a flat list is a row; it is a column for the others.
 _ROWS = {"K", "reference"}
 
@@ -59,9 +61,10 @@ def at_values(result: Any, given: Mapping[Any, Any]) -> Any:
     values = _values(given, plant, {name for value in read.values() for name in _names(value)})
     if not values:
         return result
-    there = _plant(plant, values)
+    there = _defined(lambda: _plant(plant, values), values)
     there.is_in_decimals = there.is_in_decimals or has_decimals([*given.values()])
-    moved = {name: _moved(value, values) for name, value in read.items() if values.keys() & _names(value)}
+    used = {name: value for name, value in read.items() if values.keys() & _names(value)}
+    moved = _defined(lambda: {name: _moved(value, values) for name, value in used.items()}, values)
     return task(there, **{**result.specification, **moved}).with_gains_of(result, values)
 
 
@@ -79,14 +82,19 @@ def _values(given: Mapping[Any, Any], plant: StateSpace, asked: set[str]) -> dic
     return inserted({name: value for one in read for name, value in one.items()})
 
 
-def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
-    """Return the plant at these values; in its page they do not occur any more."""
+def _defined(part: Callable[[], _T], values: dict[str, Scalar]) -> _T:
+    """Return a part of the problem at these values; raises `InputError` where it has none."""
     try:
-        there = plant.substitute(values)
+        return part()
     except ZeroDivisionError:
         shown_values = ", ".join(f"{name} = {value}" for name, value in values.items())
-        message = f"there is no plant at {shown(shown_values, 80)}: a denominator of its data is 0"
+        message = f"the problem is not defined at {shown(shown_values, 80)}: a denominator of its data is 0"
         raise InputError(message, where="values", repair="give values where the data are defined") from None
+
+
+def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
+    """Return the plant at these values; in its page they do not occur any more."""
+    there = plant.substitute(values)
     if plant.polynomial is not None:
         polynomial = substitute(plant.polynomial, values)
         there = StateSpace.from_polynomial(polynomial, there.dt, symbols=there.symbols)

@@ -131,12 +131,9 @@ def repair(page: Builder, letter: str, result: RankResult, kind: str) -> list[St
 
 
 def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> None:
-    rank = result.answer["rank"]
-    rank_relation = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
     _outside_drops(page, _distances(result))
-    is_said = not result.case_tree or page.environment.relations
-    key = "no" if is_said and fits(f"no_{kind}", rank_relation, page.environment) else "generic_low"
-    page.conclude(f"{key}_{kind}", rank=rank_relation)
+    is_said = not result.case_tree or bool(page.environment.relations)
+    tell_deficient(page, letter, result.answer["rank"], kind, everywhere=is_said)
     matrix = page[letter] if kind == "observability" else page[letter].T
     zero = Matrix.zeros(matrix.value.shape[0], 1)
     unseen = [relation(matrix @ page.value(vector), zero) for vector in result.kernel_vectors]
@@ -153,6 +150,13 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
             roots_of(polynomial, page.plant.variable),
         ),
     )
+
+
+def tell_deficient(page: Builder, letter: str, rank: int, kind: str, *, everywhere: bool = True) -> None:
+    """Say that a rank is below the order, and whether it is this one for all parameters or for generic ones."""
+    found = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
+    key = "no" if everywhere and fits(f"no_{kind}", found, page.environment) else "generic_low"
+    page.conclude(f"{key}_{kind}", rank=found)
 
 
 def outside_cases(page: Builder, result: Result, steps: list[Step]) -> list[Step]:

@@ -32,6 +32,7 @@ from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
 from symobs.system.conditions import Condition, never_zero, sign_of
 from symobs.system.specification import read_symmetric
+from symobs.tasks.analysis.rank.rank_page import tell_deficient
 from symobs.tasks.analysis.rank.rank_test import rank_answer
 from symobs.tasks.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
 from symobs.tasks.analysis.time_response.horizons import (
@@ -437,8 +438,7 @@ def tell_unobservable(result: InitialStateCovariance, page: Builder) -> None:
     """Say that there is no estimate."""
     rank = result.answer["rank"]
     page.set("O", rank["matrix"])
-    found = relation(page["O"].apply("rank"), rank["rank"], "<", result.plant.order)
-    page.conclude("no_observability", rank=found)
+    tell_deficient(page, "O", rank["rank"], "observability")
 
 
 def _tell_horizons(result: InitialStateCovariance, page: Builder) -> None:

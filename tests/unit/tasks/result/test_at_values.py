@@ -125,10 +125,13 @@ def test_where_there_is_no_plant_and_where_a_sign_is_another() -> None:
     result = symobs.observer(
         symobs.StateSpace("[0 1; -k/m 0]", None, "[1 0]", symbols={"k": "positive", "m": "real"}), poles="-1, -2"
     )
-    with pytest.raises(InputError, match=r"there is no plant at k = 1, m = 0: a denominator of its data is 0"):
+    with pytest.raises(InputError, match=r"the problem is not defined at k = 1, m = 0: a denominator of its data is 0"):
         result.at(k=1, m=0)
     with pytest.raises(InputError, match=r"values\.k: -1 is not positive, as k is declared"):
         result.at(k=-1)
+    led = symobs.minimum_energy_input(HIDDEN, final="[1/k; 0]", horizon=1)
+    with pytest.raises(InputError, match=r"the problem is not defined at k = 0: a denominator of its data is 0"):
+        led.at(k=0)
     with pytest.raises(InputError, match="holds in one case of a result; give the values to the result itself"):
         symobs.observer(HIDDEN, poles="-k, -5").cases[0].result.at(k=1)
 
