@@ -16,7 +16,7 @@ from symobs.applications.audit.slips import SearchBudget
 from symobs.applications.checking.answers import Answer, Step, as_value, read_like
 from symobs.applications.checking.handwriting import in_letters, letters_of_entries
 from symobs.applications.checking.judgement import OF_THE_PLANT, exists, field_called, is_of_time
-from symobs.applications.checking.regions import compare, read_conditions
+from symobs.applications.checking.regions import SOME_PIECES, compare, part_described, read_conditions
 from symobs.applications.checking.report import Line
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.formula.expression.syntax import SyntaxNode, letters_of
@@ -495,7 +495,7 @@ def _entry(state: _Derivation, step: Step, answer: Answer) -> PrintedEntry:
 
 
 def _of_conditions(state: _Derivation, step: Step) -> Line:
-    """Return a line of conditions: true where the region implies them."""
+    """Return a line of conditions: true where the region implies them; a line may have one of its pieces."""
     view = next((view for view in state.views if view.task == "stability_region"), None)
     if view is None:
         return Line(step.where, step.relation, "unreadable", reason="no region is asked for here")
@@ -506,12 +506,15 @@ def _of_conditions(state: _Derivation, step: Step) -> Line:
         ours = read_conditions(list(view.result.fields["stable_if"]), known)
         both = tuple((*mine, *theirs) for mine in ours for theirs in union)
         found = compare(view.result, both)  # type: ignore[arg-type]
+        part = part_described(view.result, union) if found.verdict == "wrong" else ""  # type: ignore[arg-type]
     except _OPEN as error:
         return Line(step.where, step.relation, "undecided", reason=str(error))
     except SymobsError as error:
         return Line(step.where, step.relation, "unreadable", reason=_without_place(error))
-    verdict = {"right": "true", "undecided": "undecided"}.get(found.verdict, "false")
-    return Line(step.where, step.relation, verdict)
+    verdict = {"right": "true", "wrong": "undecided" if part == SOME_PIECES else "false"}.get(
+        found.verdict, "undecided"
+    )
+    return Line(step.where, step.relation, verdict, reason=part)
 
 
 def _is_met(milestone: Milestone, lines: Sequence[Line], right: set[str]) -> bool:

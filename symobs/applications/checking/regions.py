@@ -377,7 +377,35 @@ def _explained(result: StabilityRegion, union: Union, found: Separation) -> Sepa
         return replace(found, slip="boundary", reason=f"the region is right, but yours {lies}")
     for slip, reason in _slips(result, union):
         return replace(found, slip=slip, reason=f"{reason}; {_at_point(result, found)}")
-    return replace(found, reason=_at_point(result, found))
+    return replace(found, reason="; ".join(filter(None, (_at_point(result, found), part_described(result, union)))))
+
+
+#: What conditions describe that hold in some of the intervals of a region of one parameter, in these throughout.
+SOME_PIECES = "the conditions describe some of the pieces of the region, not all of them"
+
+
+def part_described(result: StabilityRegion, union: Union) -> str:
+    """Return that conditions describe a part of the region; nothing where they hold elsewhere too, or nowhere."""
+    if result.region is None:
+        return ""
+    pieces: list[set[bool]] = [set()]
+    try:
+        for fixed, name, height, right in _pieces(result.region, union):
+            mine = _holds(union, fixed, name, height)
+            if right:
+                pieces[-1].add(mine)
+            elif mine:
+                return ""
+            else:
+                pieces.append(set())
+    except TooLarge:
+        return ""
+    held = set[bool]().union(*pieces)
+    if held != {True, False}:
+        return ""
+    if isinstance(result.region, PlaneRegion) or {True, False} in pieces:
+        return "the conditions describe a part of the region only"
+    return SOME_PIECES
 
 
 def _at_point(result: StabilityRegion, found: Separation) -> str:
@@ -397,11 +425,8 @@ def _slips(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
         yield "margin_forgotten", f"these are the conditions without the margin {boundary.margin}"
     if len(union) == 1:
         yield from _slips_of_one(result, union)
-    if (
-        union
-        and boundary.margin.is_zero
-        and _same(_within(result, replace(boundary, discrete=not boundary.discrete)), union)
-    ):
+    other = _within(result, replace(boundary, discrete=not boundary.discrete)) if boundary.margin.is_zero else None
+    if union and other is not None and not other.empty and _same(other, union):
         stable = "all real parts < 0" if boundary.discrete else "all |z| < 1"
         yield "discrete", f"these are the conditions for {stable}, which is stability in the other kind of time"
 

@@ -154,7 +154,10 @@ def _framed(
     """Return the rows with axes, their names and round numbers."""
     first, second = ([printer.inline(name) for name in names] + [""])[:2]
     below, beside = (
-        {find(ends, Fraction(value)): printer.language.decimal(text) for value, text in ticks(*map(float, ends))}
+        {
+            find(ends, Fraction(value)): printer.language.decimal(text)
+            for value, text in ticks(float(ends[0]), float(ends[1]))
+        }
         for find, ends in zip((_column, _row), window, strict=True)
     )
     margin = max(map(len, beside.values()))

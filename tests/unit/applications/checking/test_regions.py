@@ -143,6 +143,8 @@ POSITIVE, NONZERO, REAL = (region("s + a", "a", symbols=symbols) for symbols in 
 SHIFTED = region("s + a - 1", "a", symbols='a = "positive"')
 THREE = region("s^3 + a s^2 + b s + c", "a, b, c")
 NOWHERE = region("s^4 + a s^3 + b s + c", "a, b, c")
+# Stable where |h| > 1; the product of the roots is 1, so that in discrete time nothing is.
+PIECES = region("s^2 + (h^2 - 1) s + 1", "h")
 PROBLEMS = {name: value for name, value in vars().items() if isinstance(value, Checked)}
 
 
@@ -156,3 +158,17 @@ def test_the_slip_and_the_reason(checked: str, conditions: Any, verdict: str, re
     assert (found.verdict, found.slip or "") == (told, verdict if verdict != told else "")
     assert found.reason.startswith(reason)
     assert bool(found.reason) is bool(reason)
+
+
+def test_a_piece_of_a_region_is_no_false_line_and_not_the_region() -> None:
+    """Stable are h < −1 and h > 1; h > 2 is less than a piece, h > 0 more."""
+    for line, verdict, reason in (
+        ("h > 1", "undecided", "some of the pieces of the region"),
+        ("h < -1", "undecided", "some of the pieces of the region"),
+        ("h > 2", "false", "a part of the region only"),
+        ("h > 0", "false", ""),
+        ("h > 1 or h < -1", "true", ""),
+    ):
+        (found,) = PIECES.report({"step": [{"relation": line}]}).lines
+        assert (found.verdict, reason in found.reason, bool(found.reason)) == (verdict, True, bool(reason))
+    assert "some of the pieces of the region" in part(PIECES, "h > 1").reason
