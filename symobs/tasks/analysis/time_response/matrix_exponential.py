@@ -16,6 +16,7 @@ from symobs.exact.time_functions.matrix_exponential import (
     exponential,
 )
 from symobs.exact.time_functions.matrix_power import INSTANT, matrix_power
+from symobs.exact.time_functions.quasipolynomial import rate_parts
 from symobs.formula.tree import Identity, Letter, Literal, Negative, Power, Product, Sum
 from symobs.formula.tree.term import Term, identity, letter
 from symobs.ground.dataclass import dataclass
@@ -202,9 +203,10 @@ def _functions(value: Matrix) -> list[Any]:
 
 
 def _sum_of_modes(found: Exponential) -> Formula:
-    """Return Σ function · matrix; a single pair on two states in the letters A and I."""
+    """Return Σ function · matrix; a single pair on two states in the letters A and I, in the functions of the entries."""
     mode = found.parts[0][0]
-    if found.order == 2 and len(found.parts) == 1 and isinstance(mode, Mode) and len(mode.start) == 2:
+    is_pair = found.order == 2 and len(found.parts) == 1 and len(mode.start) == 2
+    if is_pair and isinstance(mode, Mode) and (mode.oscillates or rate_parts(mode.rate)[1].is_zero):
         still = Mode(Scalar.of(0), mode.discriminant, mode.oscillates)
         C, S = still.values(0, TIME)
         shifted = _shifted(mode.rate)

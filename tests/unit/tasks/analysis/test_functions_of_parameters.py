@@ -41,6 +41,8 @@ def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
         # roots of numbers beside the root of a discriminant
         ("matrix_exponential", ("[1-sqrt(3) 2; a-sqrt(2) sqrt(2)]",), {}),
         ("zero_order_hold", ("[-2 a; -1 sqrt(3)-1]", "[sqrt(2); -2]"), {}),
+        # a real part with a root, √2/2 ± √10/2
+        ("matrix_exponential", ("[sqrt(2) sqrt(2); sqrt(2) 0]",), {}),
         # several inputs, and no family is known
         ("state_feedback", ("[0 0; cos(b) a]", "[exp(-a) 1; 0 -b]"), {"poles": "-1, -2"}),
         # no unknown input, and a pair that is observable for a ≠ 0
