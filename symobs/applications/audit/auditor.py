@@ -32,9 +32,9 @@ from symobs.applications.audit.evaluation import (
     as_printed,
     common,
     equal,
+    formula_of,
     holds,
     is_rounded,
-    is_signal,
     is_spectrum,
     shape,
     spectral,
@@ -49,7 +49,6 @@ from symobs.formula.expression import declared_name
 from symobs.formula.expression.source import shown
 from symobs.formula.expression.syntax import SyntaxNode, every, letters_of
 from symobs.formula.tree import Environment, Signal
-from symobs.formula.tree.term import Term
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import (
     BudgetExceeded,
@@ -130,7 +129,7 @@ class CandidateLetters:
         if isinstance(found, Flexible):
             return None
         size = shape(found)
-        return is_signal(found), None if size == (1, 1) else size
+        return isinstance(found, Signal), None if size == (1, 1) else size
 
 
 def _turned(kind: Kind) -> Kind:
@@ -256,7 +255,7 @@ def _vanishes(node: SyntaxNode, reading: Reading) -> bool:
     """Return whether a part of an equation is zero."""
     try:
         found = value_of(node, reading)
-        return found.factor.is_zero if isinstance(found, Flexible) else equal(found, found - found)
+        return equal(*common(found, Scalar.of(0)))
     except (Misfit, Unknown, *EVALUATION_ERRORS):
         return False
 
@@ -409,7 +408,7 @@ class EquationAuditor:
         try:
             left, right = spectral(printed_left, printed_right, environment.variable)
             sides = [self._value(side, reading) for side in (left, right)]
-            pair = common(sides[0], sides[1], environment)
+            pair = common(*sides)
         except Misfit as misfit:
             return Verdict(*self._misfit(printed_left, printed_right, str(misfit), environment))
         if equal(*pair):
@@ -421,7 +420,7 @@ class EquationAuditor:
         if (not letters_of(left) and letters_of(right)) or is_spectrum(right) or rounded == [True, False]:
             left, right, pair = right, left, (pair[1], pair[0])
         spectra = (left, right) != (printed_left, printed_right) and (right, left) != (printed_left, printed_right)
-        if is_signal(pair[0]):
+        if isinstance(pair[0], Signal):
             return Verdict(*self._signals(left, right, pair, environment))
         found = self._values(left, right, pair, reading, spectra=spectra)
         if found is None:  # only rounding parts them
@@ -484,10 +483,10 @@ class EquationAuditor:
         self.gaps += [gap for gap in reading.gaps if gap not in self.gaps]
         if isinstance(found, Flexible):
             return environment
-        if is_signal(found):
-            return environment.extended_by(signals={name: found.formula})
+        if isinstance(found, Signal):
+            return environment.extended_by(signals={name: formula_of(found)})
         others = {key: formula for key, formula in environment.signals.items() if key != name}
-        return replace(environment, signals=others, values={**environment.values, name: found.value})
+        return replace(environment, signals=others, values={**environment.values, name: found})
 
     # -- what is wrong ------------------------------------------------------------------------------------------------
 
@@ -508,21 +507,21 @@ class EquationAuditor:
         for side, other in ((left, right), (right, left)):
             try:
                 value = self._value(side, Reading(environment, self.where))
-                if is_spectrum(side) and isinstance(value, Term):
-                    return spectrum_text(side, value.value, environment.variable), message
+                if is_spectrum(side) and isinstance(value, Scalar):
+                    return spectrum_text(side, value, environment.variable), message
                 self._value(other, Reading(environment, self.where))
             except Misfit:
                 continue
-            if isinstance(value, Term) and letters_of(side) and not is_signal(value):
-                return f"{side} = {differences.value_text(value.value)}", message
+            if isinstance(value, (Scalar, Matrix)) and letters_of(side):
+                return f"{side} = {differences.value_text(value)}", message
         return "", message
 
     def _values(
-        self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Term, Term], reading: Reading, *, spectra: bool
+        self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Any, Any], reading: Reading, *, spectra: bool
     ) -> tuple[str, str] | None:
         """Return the error of a value or of a formula for one, None if it differs by rounding only."""
         environment = reading.environment
-        exact, printed = (differences.as_matrix(term.value) for term in pair)
+        exact, printed = map(differences.as_matrix, pair)
         rounded = as_printed(right, reading) if is_rounded(right, reading) else None
         if (
             rounded is not None and differences.as_matrix(rounded).shape == exact.shape
@@ -547,7 +546,7 @@ class EquationAuditor:
         if factor is not None:
             return factor
         whole = differences.reasons(printed, exact, str(left))
-        value, alike = (exact[0, 0], printed[0, 0]) if isinstance(pair[1].value, Scalar) else (exact, printed)
+        value, alike = (exact[0, 0], printed[0, 0]) if isinstance(pair[1], Scalar) else (exact, printed)
         return f"{left} = {differences.value_text(value, alike)}", reason or whole
 
     def _is_written_out(self, node: SyntaxNode, environment: Environment) -> bool:
@@ -564,9 +563,9 @@ class EquationAuditor:
         return None
 
     def _signals(
-        self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Term, Term], environment: Environment
+        self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Any, Any], environment: Environment
     ) -> tuple[str, str]:
-        exact, printed = (self._coefficients(term) for term in pair)
+        exact, printed = ({name: part for name, part in side.coefficients.items() if not part.is_zero} for side in pair)
         names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
         wrong = {
             name: differences.wrong_entries(printed[name], exact[name])
@@ -595,11 +594,6 @@ class EquationAuditor:
             " + ".join(differences.term_text(value, name) for name, value in exact.items()).replace("+ -", "- ") or "0"
         )
         return "" if terms == str(left) else f"{left} = {terms}", "; ".join(reasons)
-
-    def _coefficients(self, term: Term) -> dict[str, Matrix]:
-        value = term.value
-        assert isinstance(value, Signal)  # noqa: S101 - an invariant of the caller
-        return {name: part for name, part in value.coefficients.items() if not part.is_zero}
 
     def _missing_term(
         self,

@@ -6,6 +6,7 @@ from dataclasses import replace
 from itertools import combinations, islice, product
 from typing import TYPE_CHECKING, TypeAlias
 
+from symobs.applications.audit.differences import as_matrix
 from symobs.applications.audit.equations import BEGIN, END, INSTANTS, krylov, text_of_value
 from symobs.exact import Matrix, Scalar, rank, roots_of
 from symobs.exact.algebraic.rounded_decimals import as_generator, decimals_in, polynomial_of
@@ -16,8 +17,22 @@ from symobs.exact.time_functions.antiderivative import antiderivative
 from symobs.formula.expression import parse_poles
 from symobs.formula.expression.names import FUNCTIONS
 from symobs.formula.expression.syntax import SyntaxNode, exponent_of
-from symobs.formula.tree import Apply, Environment, Letter, Literal, Relation, Signal
-from symobs.formula.tree.term import Term, block
+from symobs.formula.tree import (
+    Apply,
+    Block,
+    Derivative,
+    Environment,
+    Exact,
+    Letter,
+    Literal,
+    Product,
+    Relation,
+    Signal,
+    Sum,
+    agree,
+    evaluate,
+)
+from symobs.formula.tree.arithmetic import add, scalar, times
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.proof.certificate.claims import EVALUATION_ERRORS, verify
@@ -26,6 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.applications.audit.equations import Reading
+    from symobs.formula.tree import Formula
 
 
 # The functions of printed equations, with errors for sizes that do not match and costly arguments.
@@ -196,16 +212,7 @@ def _root(part: SyntaxNode, radicand: Scalar, reading: Reading) -> Scalar:
     return root
 
 
-def integrated(integrand: Matrix, name: str, ends: tuple[Scalar, Scalar]) -> Matrix | None:
-    """Return an integral by a checked antiderivative, None if none is found."""
-    whole = antiderivative(integrand, name)
-    if whole is None or derivative(whole, name) != integrand:
-        return None
-    lower, upper = (substitute(whole, {name: end}) for end in ends)
-    return upper - lower
-
-
-# Sizes of values in printed equations, and equality of two sides.
+# Values of printed equations: their sizes, and the equality of two sides.
 
 
 @dataclass
@@ -215,82 +222,93 @@ class Flexible:
     factor: Scalar
 
 
-Printed: TypeAlias = Term | Flexible
+Printed: TypeAlias = Scalar | Matrix | Signal | Flexible
 
 
-def shape(term: Term) -> tuple[int, int] | None:
+class _Certified(Exact):
+    """The exact kernel, where values are equal by a certificate."""
+
+    def equal(self, left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
+        meanings, relations = identities((left, right))
+        there = Environment(coefficients=meanings, relations=relations)
+        return bool(verify(Relation((Literal(left), Literal(right)), ("=",)), there)[0])
+
+
+KERNEL = _Certified(Environment())
+
+
+#: The sizes of a number.
+SINGLE = ((1, 1), None)
+
+
+def shape(value: Printed) -> tuple[int, int] | None:
     """Return rows and columns of a value or a signal, None for a number."""
-    value = term.value
+    return (value.size, 1) if isinstance(value, Signal) else value.shape if isinstance(value, Matrix) else None
+
+
+def formula_of(value: Printed) -> Formula:
+    """Return a value or a signal written out."""
     if isinstance(value, Signal):
-        return value.size, 1
-    return value.shape if isinstance(value, Matrix) else None
+        return Sum(tuple(Product((Literal(part), Letter(name))) for name, part in value.coefficients.items()))
+    return Literal(value)  # type: ignore[arg-type]
 
 
-def is_signal(printed: Printed) -> bool:
-    """Return whether a value is made of signals."""
-    return isinstance(printed, Term) and isinstance(printed.value, Signal)
+def scaled(value: Printed, factor: Scalar) -> Printed:
+    """Return a multiple of a value."""
+    found: Printed = Flexible(value.factor * factor) if isinstance(value, Flexible) else times(factor, value, KERNEL)
+    return found
 
 
-def fitted(flexible: Flexible, like: Term) -> Term:
-    """Return a multiple of the identity in the size of another value; raises Misfit unless that is square."""
-    size = shape(like)
-    if is_signal(like):
+def fitted(value: Printed, like: Printed) -> Printed:
+    """Return a value in the size of another one if its own is undetermined; raises Misfit for I beside a signal."""
+    if not isinstance(value, Flexible) or isinstance(like, Flexible):
+        return value
+    if value.factor.is_zero:
+        return scaled(like, value.factor)
+    if isinstance(like, Signal):
         raise no_fit("the identity matrix stands beside a signal")
-    if size is None or size == (1, 1):
-        return Term(Literal(flexible.factor), like.environment)
-    if flexible.factor.is_zero:
-        return Term(Literal(Matrix.zeros(*size)), like.environment)
-    if size[0] != size[1]:
-        raise no_fit(f"the identity matrix is square, but {sized(size)} stands beside it")
-    return Term(Literal(Matrix.identity(size[0]) * flexible.factor), like.environment)
+    size = shape(like)
+    return value.factor if size in SINGLE else _of_size(value, size)
 
 
-def kind_of(term: Term) -> str:
+def kind_of(value: Printed) -> str:
     """Return the size of a value in words."""
-    size = shape(term)
-    if size is not None and is_signal(term):
-        return f"has {size[0]} component{'s' if size[0] > 1 else ''}"
-    return f"is {sized(size)}"
+    if isinstance(value, Signal):
+        return f"has {value.size} component{'s' if value.size > 1 else ''}"
+    return f"is {sized(shape(value))}"
 
 
-def alike(left: Term, right: Term) -> bool:
+def alike(left: Printed, right: Printed) -> bool:
     """Return whether two values can be added."""
-    single = ((1, 1), None)
-    if is_signal(left) != is_signal(right):
+    if isinstance(left, Signal) != isinstance(right, Signal):
         return False
-    return shape(left) == shape(right) or (shape(left) in single and shape(right) in single)
+    return shape(left) == shape(right) or (shape(left) in SINGLE and shape(right) in SINGLE)
 
 
-def common(left: Printed, right: Printed, environment: Environment) -> tuple[Term, Term]:
+def common(left: Printed, right: Printed) -> tuple[Printed, Printed]:
     """Return two sides in one size; raises Misfit where they have none."""
-    if isinstance(left, Flexible) or isinstance(right, Flexible):
-        if isinstance(left, Term):
-            return left, fitted(right, left)  # type: ignore[arg-type]
-        if isinstance(right, Term):
-            return fitted(left, right), right
-        return tuple(Term(Literal(side.factor), environment) for side in (left, right))  # type: ignore[return-value]
-    if not alike(left, right) and (_is_zero(left) or _is_zero(right)):
-        return (left, left - left) if _is_zero(right) else (right - right, right)
     if not alike(left, right):
-        if is_signal(left) != is_signal(right) and (shape(left) or (1, 1)) == (shape(right) or (1, 1)):
+        left, right = _of_any_size(left), _of_any_size(right)
+    left, right = fitted(left, right), fitted(right, left)
+    if isinstance(left, Flexible) and isinstance(right, Flexible):
+        return left.factor, right.factor
+    if not alike(left, right):
+        if isinstance(left, Signal) != isinstance(right, Signal) and (shape(left) or (1, 1)) == (
+            shape(right) or (1, 1)
+        ):
             raise InputError("a signal has no value of its own", repair="print an equation between signals")
         raise no_fit(f"the left side {kind_of(left)}, the right side {kind_of(right)}")
     return left, right
 
 
-def _is_zero(term: Term) -> bool:
-    return isinstance(term.value, Scalar) and term.value.is_zero
+def _of_any_size(value: Printed) -> Printed:
+    """Return the number 0 as a zero matrix of any size, and any other value as it is."""
+    return Flexible(value) if isinstance(value, Scalar) and value.is_zero else value
 
 
-def equal(left: Term, right: Term) -> bool:
-    """Return whether two sides are equal, by a certificate."""
-    environment = left.environment
-    exact = [value for value in (left.value, right.value) if isinstance(value, (Scalar, Matrix))]
-    meanings, relations = identities(exact)
-    if meanings or relations:
-        environment = Environment(environment.variable, coefficients=meanings, relations=relations)
-        return bool(verify(Relation((Literal(exact[0]), Literal(exact[1])), ("=",)), environment)[0])
-    return bool(verify(Relation((left.formula, right.formula), ("=",)), environment)[0])
+def equal(left: Printed, right: Printed) -> bool:
+    """Return whether two sides of one size are equal, by a certificate."""
+    return agree(left, right, KERNEL)
 
 
 #: So many primes may stand behind each other: derivatives, or transposes.
@@ -304,18 +322,15 @@ def value_of(node: SyntaxNode, reading: Reading) -> Printed:
         known: Printed = reading.kept[key][1]
         return known
     found = _value(node, reading)
-    if isinstance(found, Term):
-        _bounded(found)
-        if node.parts and not is_signal(found):  # what stands around it need not evaluate its formula again
-            found = Term(Literal(found.value), found.environment)
+    _bounded(found)
     if reading.kept is not None:
         reading.kept[key] = (node, found)
     return found
 
 
-def _bounded(term: Term) -> None:
-    value = term.value
-    for part in value.coefficients.values() if isinstance(value, Signal) else (value,):
+def _bounded(value: Printed) -> None:
+    whole = value.factor if isinstance(value, Flexible) else value
+    for part in whole.coefficients.values() if isinstance(whole, Signal) else (whole,):
         if part.size > MOST_TERMS or max(part.lengths()) > MOST_BITS or max(part.degrees()) > MOST_DEGREE:
             raise too_large()
 
@@ -326,20 +341,18 @@ def _value(node: SyntaxNode, reading: Reading) -> Printed:
         case "number":
             decimal = as_generator(node.text, node.places[0]) if reading.rounding and node.places else None
             assert isinstance(node.value, Scalar)  # noqa: S101 - an invariant of the grammar
-            return Term(Literal(decimal or node.value), reading.environment)
+            return decimal or node.value
         case "letter":
             return _letter(node.text, reading)
         case "sum":
             return _sum(parts, reading)
         case "negative":
-            inner = value_of(parts[0], reading)
-            return Flexible(-inner.factor) if isinstance(inner, Flexible) else -inner
+            return scaled(value_of(parts[0], reading), Scalar.of(-1))
         case "product":
             total = value_of(parts[0], reading)
             for i, part in enumerate(parts[1:], start=1):
                 total = _times(total, value_of(part, reading), SyntaxNode("product", parts[:i]), part)
-                if isinstance(total, Term):
-                    _bounded(total)
+                _bounded(total)
             return total
         case "quotient":
             return _quotient(parts, reading)
@@ -357,32 +370,34 @@ def _value(node: SyntaxNode, reading: Reading) -> Printed:
 
 def _letter(name: str, reading: Reading) -> Printed:
     environment = reading.environment
-    if name in environment.signs:
-        return Term(Literal(Scalar.symbol(name)), environment)
-    if environment.defines(name) and name != "s":
-        return Term(Letter(name), environment)
-    if name in {environment.variable, *INSTANTS}:
-        return Term(Literal(Scalar.symbol(name)), environment)
+    known = name in environment.values or name in environment.signals
+    if name in environment.signs or (name in {environment.variable, *INSTANTS} and not known):
+        return Scalar.symbol(name)
+    if known:
+        return _evaluated(Letter(name), reading)
     if name == "I":
         return Flexible(Scalar.of(1))
     raise Unknown(name)
 
 
+def _evaluated(formula: Formula, reading: Reading) -> Printed:
+    found: Printed = evaluate(formula, reading.environment, KERNEL)
+    return found
+
+
 def _sum(parts: Sequence[SyntaxNode], reading: Reading) -> Printed:
-    found = [value_of(part, reading) for part in parts]
-    terms = [(part, value) for part, value in zip(parts, found, strict=True) if isinstance(value, Term)]
-    if not terms:
-        return Flexible(sum((value.factor for value in found if isinstance(value, Flexible)), Scalar.of(0)))
-    if any(isinstance(value, Flexible) for value in found) and all(shape(value) is None for _, value in terms):
+    found = [(part, value_of(part, reading)) for part in parts]
+    fixed = [(part, value) for part, value in found if not isinstance(value, Flexible)]
+    if fixed and len(fixed) < len(found) and all(isinstance(value, Scalar) for _, value in fixed):
         raise no_fit("a number stands beside the identity matrix")
-    (head, first) = next(((part, value) for part, value in terms if shape(value) is not None), terms[0])
-    total: Term | None = None
-    for part, value in zip(parts, found, strict=True):
-        term = fitted(value, first) if isinstance(value, Flexible) else value
+    head, first = next(((part, value) for part, value in fixed if shape(value)), (fixed or found)[0])
+    total = scaled(first, Scalar.of(0))
+    for part, value in found:
+        term = fitted(value, first)
         if not alike(term, first):
             raise no_fit(f"{_unsigned(head)} {kind_of(first)}, but {_unsigned(part)} {kind_of(term)}")
-        total = term if total is None else total + term
-    assert total is not None  # noqa: S101 - a sum has parts
+        both = isinstance(total, Flexible) and isinstance(term, Flexible)
+        total = Flexible(total.factor + term.factor) if both else add(total, term, KERNEL)  # type: ignore[union-attr]
     return total
 
 
@@ -391,96 +406,75 @@ def _unsigned(part: SyntaxNode) -> SyntaxNode:
 
 
 def _times(left: Printed, right: Printed, before: SyntaxNode, behind: SyntaxNode) -> Printed:
-    if isinstance(left, Flexible):
-        if isinstance(right, Flexible):
-            return Flexible(left.factor * right.factor)
-        return right * left.factor if left.factor != Scalar.of(1) else right
-    if isinstance(right, Flexible):
-        if shape(left) is None:
-            return Flexible(right.factor * left.value)
-        return left * right.factor if right.factor != Scalar.of(1) else left
-    if is_signal(left):
-        if is_signal(right) or shape(right) not in (None, (1, 1)):
+    for one, other in ((left, right), (right, left)):
+        if isinstance(one, Flexible):
+            return Flexible(one.factor * other) if isinstance(other, Scalar) else scaled(other, one.factor)
+    if isinstance(left, Signal):
+        if isinstance(right, Signal) or shape(right) not in SINGLE:
             raise Misfit(f"{before} is a signal; {behind} has to stand before it")
-        return Term(Literal(right.scalar), right.environment) @ left
+        return scaled(left, scalar(right, KERNEL))
     first, second = shape(left), shape(right)
     if first is not None and second is not None and first[1] != second[0]:
         raise no_fit(f"{before} {kind_of(left)} and {behind} {kind_of(right)}")
-    return left @ right
+    found: Printed = times(left, right, KERNEL)
+    return found
 
 
 def _quotient(parts: Sequence[SyntaxNode], reading: Reading) -> Printed:
     above, below = (value_of(part, reading) for part in parts)
-    if isinstance(below, Flexible) or is_signal(below) or shape(below) not in (None, (1, 1)):
+    if isinstance(below, (Flexible, Signal)) or shape(below) not in SINGLE:
         raise Misfit(f"{parts[1]} is no number to divide by")
-    divisor = below.scalar
-    if divisor.is_zero:
-        raise Misfit(f"{parts[1]} is 0")
-    reading.fails_where([divisor], f"{parts[1]} is 0")
-    return Flexible(above.factor / divisor) if isinstance(above, Flexible) else above / below
+    divisor = scalar(below, KERNEL)
+    _require_nonzero(divisor, f"{parts[1]} is 0", reading)
+    return scaled(above, 1 / divisor)
+
+
+def _require_nonzero(value: Scalar, says: str, reading: Reading) -> None:
+    """Raise Misfit if a value is 0, and note that something fails where it is."""
+    if value.is_zero:
+        raise Misfit(says)
+    reading.fails_where([value], says)
 
 
 def _power(base: SyntaxNode, exponent: int, reading: Reading) -> Printed:
     value = value_of(base, reading)
-    if isinstance(value, Flexible):
-        if exponent < 0:
-            _require_inverse(base, value.factor, reading)
-        return Flexible(value.factor**exponent)
-    size = shape(value)
-    if is_signal(value) or (size is not None and size[0] != size[1]):
+    inner, size = value.factor if isinstance(value, Flexible) else value, shape(value)
+    if isinstance(inner, Signal) or (size is not None and size[0] != size[1]):
         raise no_fit(f"{base} {kind_of(value)}: only square matrices have powers and inverses")
     if exponent < 0:
-        if isinstance(value.value, Matrix):
-            require_small(value.value)
-        whole = value.scalar if size in (None, (1, 1)) else value.value.determinant()
-        _require_inverse(base, whole, reading)
-        value, exponent = value.inverse, -exponent
-    if not exponent:
-        return Term(Literal(Scalar.of(1) if size is None else Matrix.identity(size[0])), reading.environment)
-    total: Term = value
-    for _ in range(exponent - 1):
-        total = total @ value
+        if isinstance(inner, Matrix):
+            require_small(inner)
+        whole = inner.determinant() if isinstance(inner, Matrix) else inner
+        _require_nonzero(whole, f"{base} has no inverse", reading)
+        inner, exponent = KERNEL.invert(inner), -exponent
+    total: Printed = Scalar.of(1) if size is None else Matrix.identity(size[0])
+    for _ in range(exponent):
+        total = times(total, inner, KERNEL)
         _bounded(total)
-    return total
-
-
-def _require_inverse(base: SyntaxNode, determinant: Scalar, reading: Reading) -> None:
-    if determinant.is_zero:
-        raise Misfit(f"{base} has no inverse")
-    reading.fails_where([determinant], f"{base} has no inverse")
+    return Flexible(total) if isinstance(value, Flexible) else total  # type: ignore[arg-type]
 
 
 def _at(function: SyntaxNode, argument: SyntaxNode, reading: Reading) -> Printed:
     """Return a function at its argument: P(0), φ(A); at its own variable, and at a time, it is itself."""
     value, variable = value_of(function, reading), reading.environment.variable
-    varies = isinstance(value, Term) and not is_signal(value) and variable in value.value.names
+    varies = isinstance(value, (Scalar, Matrix)) and variable in value.names
     if argument.kind == "letter" and (argument.text == variable or (argument.text == "t" and not varies)):
         return value
-    if not isinstance(value, Term) or not varies:
+    if not isinstance(value, (Scalar, Matrix)) or not varies:
         raise Misfit(f"{function} is no function of {variable}")
     where = value_of(argument, reading)
-    if isinstance(where, Flexible) or is_signal(where):
+    if isinstance(where, (Flexible, Signal)):
         raise Misfit(f"{argument} is no number here")
-    if isinstance(where.value, Matrix) and where.value.shape != (1, 1):
-        return _at_matrix(function, value, argument, where)
-    try:
-        found = value.value.substitute({variable: where.scalar})
-        below = value.value.common_denominator().substitute({variable: where.scalar})
-    except ZeroDivisionError:
-        raise Misfit(f"{function}({argument}) has no value") from None
-    if below.is_zero:
-        raise Misfit(f"{function}({argument}) has no value")
-    reading.fails_where([below], f"{function}({argument}) has no value")
-    return Term(Literal(found), reading.environment)
-
-
-def _at_matrix(function: SyntaxNode, value: Term, argument: SyntaxNode, where: Term) -> Term:
-    polynomial = function.kind == "letter" and isinstance(value.value, Scalar)
-    if not polynomial or not value.value.is_polynomial_in(where.environment.variable):
+    if shape(where) in SINGLE:
+        instant = {variable: scalar(where, KERNEL)}
+        says = f"{function}({argument}) has no value"
+        _require_nonzero(value.common_denominator().substitute(instant), says, reading)
+        return value.substitute(instant)
+    if function.kind != "letter" or not isinstance(value, Scalar) or not value.is_polynomial_in(variable):
         raise Misfit(f"{function} is no polynomial, which alone has a value at a matrix")
-    if where.value.shape[0] != where.value.shape[1]:
+    if where.shape[0] != where.shape[1]:  # type: ignore[union-attr]
         raise no_fit(f"{argument} {kind_of(where)}, but a polynomial takes a square matrix")
-    return Term(Apply(f"{function.text}_at", where.formula), where.environment)
+    return _evaluated(Apply(f"{function.text}_at", Literal(where)), reading)
 
 
 def _primed(base: SyntaxNode, reading: Reading) -> Printed:
@@ -490,82 +484,47 @@ def _primed(base: SyntaxNode, reading: Reading) -> Printed:
     if primes > _MOST_PRIMES:  # each derivative of a signal is longer than the one before
         raise Misfit(f"{primes} primes stand behind each other, more than {_MOST_PRIMES}")
     value = value_of(base, reading)
-    if isinstance(value, Flexible):
-        return value
-    if not is_signal(value):
-        return value if shape(value) is None else value.T
-    rate = value.derivative
+    if not isinstance(value, Signal):
+        return value.T if isinstance(value, Matrix) else value
     try:
-        rate.value  # noqa: B018 - whether there is one
+        return _evaluated(Derivative(formula_of(value)), reading)
     except EVALUATION_ERRORS:
         raise Misfit(f"the derivative of {base} is not known here") from None
-    return rate
-
-
-# -- blocks -----------------------------------------------------------------------------------------------------------
 
 
 def _block(rows: Sequence[Sequence[SyntaxNode]], reading: Reading) -> Printed:
     found = [[value_of(entry, reading) for entry in row] for row in rows]
-    found = [[_zero(value) for value in row] for row in found] if _in_blocks(found) else found
-    heights: list[int | None] = [None] * len(rows)
-    widths: list[int | None] = [None] * len(rows[0])
-    for i, row in enumerate(found):
-        for j, value in enumerate(row):
-            if isinstance(value, Term):
-                height, width = shape(value) or (1, 1)
-                for sizes, index, size, what in ((heights, i, height, "row"), (widths, j, width, "column")):
-                    if sizes[index] not in (None, size):
-                        plural = f"{what}{'s' if size != 1 else ''}"
-                        message = (
-                            f"{rows[i][j]} has {size} {plural}, but another entry of its {what} has {sizes[index]}"
-                        )
-                        raise no_fit(message)
-                    sizes[index] = size
-    _spread(found, heights, widths)
-    order = reading.environment.values["A"].shape[0] if "A" in reading.environment.values else 1  # type: ignore[union-attr]
-    terms = []
-    for i, row in enumerate(found):
-        line = []
-        for j, value in enumerate(row):
-            room = (heights[i] or order, widths[j] or order)
-            line.append(value if isinstance(value, Term) else _of_size(value, room, reading))
-        terms.append(line)
-    if any(is_signal(term) for line in terms for term in line) and not all(
-        len(line) == 1 and is_signal(line[0]) for line in terms
-    ):
+    if any(isinstance(value, Flexible) or shape(value) not in SINGLE for row in found for value in row):
+        found = [[_of_any_size(value) for value in row] for row in found]
+    places = [((i, j), value) for i, row in enumerate(found) for j, value in enumerate(row)]
+    sizes: dict[tuple[str, int], int] = {}
+    for (i, j), value in places:
+        for key, size in zip((("row", i), ("column", j)), shape(value) or (1, 1), strict=True):
+            if not isinstance(value, Flexible) and sizes.setdefault(key, size) != size:
+                plural = f"{key[0]}{'s' if size != 1 else ''}"
+                raise no_fit(f"{rows[i][j]} has {size} {plural}, but another entry of its {key[0]} has {sizes[key]}")
+    for _ in (*rows, *rows[0]):  # a multiple of I is square: what is known of its row is known of its column
+        for (i, j), value in places:
+            known = sizes.get(("row", i)) or sizes.get(("column", j))
+            if isinstance(value, Flexible) and not value.factor.is_zero and known:
+                sizes = {("row", i): known, ("column", j): known, **sizes}
+    order = shape(reading.environment.values.get("A", Scalar.of(1))) or (1,)
+    for (i, j), value in places:
+        if isinstance(value, Flexible):
+            found[i][j] = _of_size(value, (sizes.get(("row", i), order[0]), sizes.get(("column", j), order[0])))
+    stacked = [len(row) == 1 and isinstance(row[0], Signal) for row in found]
+    if any(isinstance(value, Signal) for _, value in places) and not all(stacked):
         raise Misfit("signals are stacked in one column, with nothing else beside them")
-    return block([list(line) for line in terms])
+    return _evaluated(Block(tuple(tuple(map(formula_of, row)) for row in found)), reading)
 
 
-def _in_blocks(found: Sequence[Sequence[Printed]]) -> bool:
-    """Return whether a bracket contains matrices, so that a number 0 denotes a zero matrix."""
-    values = [value for row in found for value in row]
-    return any(isinstance(value, Flexible) or shape(value) not in (None, (1, 1)) for value in values)
-
-
-def _zero(value: Printed) -> Printed:
-    if isinstance(value, Term) and isinstance(value.value, Scalar) and value.value.is_zero:
-        return Flexible(Scalar.of(0))
-    return value
-
-
-def _spread(found: Sequence[Sequence[Printed]], heights: list[int | None], widths: list[int | None]) -> None:
-    """Propagate sizes between block rows and columns through identity matrices, until nothing changes."""
-    for _ in range(len(heights) + len(widths)):
-        for i, row in enumerate(found):
-            for j, value in enumerate(row):
-                if isinstance(value, Flexible) and not value.factor.is_zero:
-                    heights[i] = heights[i] or widths[j]
-                    widths[j] = widths[j] or heights[i]
-
-
-def _of_size(value: Flexible, size: tuple[int, int], reading: Reading) -> Term:
+def _of_size(value: Flexible, size: tuple[int, int]) -> Matrix:
+    """Return the multiple of the identity, or the zero matrix, of a size; raises Misfit for I that is not square."""
     if value.factor.is_zero:
-        return Term(Literal(Matrix.zeros(*size)), reading.environment)
+        return Matrix.zeros(*size)
     if size[0] != size[1]:
-        raise no_fit(f"the identity matrix stands where a {sized(size)} block belongs")
-    return Term(Literal(Matrix.identity(size[0]) * value.factor), reading.environment)
+        raise no_fit(f"the identity matrix stands where a {sized(size)} matrix belongs")
+    return Matrix.identity(size[0]) * value.factor
 
 
 # -- functions --------------------------------------------------------------------------------------------------------
@@ -576,33 +535,30 @@ def _call(node: SyntaxNode, reading: Reading) -> Printed:
         return _integral(node.parts, reading)
     found = [value_of(part, reading) for part in node.parts]
     if node.text == "size":
-        return _size(node.parts[0], found[0], reading)
-    arguments = [_argument(part, value) for part, value in zip(node.parts, found, strict=True)]
-    return Term(Literal(applied(node, arguments, reading)), reading.environment)
+        if isinstance(found[0], Flexible):
+            raise Misfit(f"{node.parts[0]} has any size")
+        return Matrix.row(list(shape(found[0]) or (1, 1)))
+    return applied(node, list(map(_argument, node.parts, found)), reading)
 
 
 def _argument(part: SyntaxNode, value: Printed) -> Matrix:
-    if isinstance(value, Flexible) or is_signal(value):
+    if isinstance(value, (Flexible, Signal)):
         raise Misfit(f"{part} is no matrix here")
-    return value.value if isinstance(value.value, Matrix) else Matrix.of([[value.value]])
+    return as_matrix(value)
 
 
-def _size(part: SyntaxNode, value: Printed, reading: Reading) -> Term:
-    if isinstance(value, Flexible):
-        raise Misfit(f"{part} has any size")
-    return Term(Literal(Matrix.row(list(shape(value) or (1, 1)))), reading.environment)
-
-
-def _integral(parts: Sequence[SyntaxNode], reading: Reading) -> Term:
+def _integral(parts: Sequence[SyntaxNode], reading: Reading) -> Matrix:
     if parts[1].kind != "letter":
         raise Misfit(f"{parts[1]} is no time to integrate over")
     integrand, begin, end = (_argument(part, value_of(part, reading)) for part in (parts[0], *parts[2:]))
-    found = integrated(integrand, parts[1].text, (begin[0, 0], end[0, 0]))
-    if found is None:
+    name = parts[1].text
+    whole = antiderivative(integrand, name)
+    if whole is None or derivative(whole, name) != integrand:
         raise InputError(f"the integral of {parts[0]} has no closed form here", repair="leave the entry out")
+    found = substitute(whole, {name: end[0, 0]}) - substitute(whole, {name: begin[0, 0]})
     new = found.common_denominator() / integrand.common_denominator()
     reading.fails_where([new], f"the integral of {parts[0]} is another")
-    return Term(Literal(found), reading.environment)
+    return found
 
 
 def as_printed(node: SyntaxNode, reading: Reading) -> Matrix | Scalar | None:
@@ -613,7 +569,7 @@ def as_printed(node: SyntaxNode, reading: Reading) -> Matrix | Scalar | None:
     if _written_as(node, reading) is None:
         return None
     found = value_of(node, replace(reading, rounding=True))
-    return None if isinstance(found, Flexible) or is_signal(found) else found.value
+    return None if isinstance(found, (Flexible, Signal)) else found
 
 
 def _written_as(node: SyntaxNode, reading: Reading) -> str | None:
@@ -640,7 +596,7 @@ def _written_as(node: SyntaxNode, reading: Reading) -> str | None:
 def holds(left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
     """Return whether an equation holds; sizes that do not match make it false."""
     try:
-        return equal(*common(value_of(left, reading), value_of(right, reading), reading.environment))
+        return equal(*common(value_of(left, reading), value_of(right, reading)))
     except (Misfit, Unknown, *EVALUATION_ERRORS):  # InputError is a ValueError
         return False
 

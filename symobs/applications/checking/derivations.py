@@ -20,7 +20,6 @@ from symobs.applications.checking.regions import SOME_PIECES, compare, part_desc
 from symobs.applications.checking.report import Line
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.formula.expression.syntax import SyntaxNode, letters_of
-from symobs.formula.tree.term import Term
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded, CertificateRejected, NotShown, ProblemErrors, SymobsError, UnknownName
 from symobs.problem.expect import found_in, met, names_of
@@ -117,7 +116,7 @@ class LineAuditor(EquationAuditor):
                 self._value(SyntaxNode("letter", text=name), reading)
         for left, right in pairwise(members):  # what is not evaluated is not false
             with suppress(Misfit):
-                common(self._value(left, reading), self._value(right, reading), reading.environment)
+                common(self._value(left, reading), self._value(right, reading))
         return all(self.true(left, right) for left, right in pairwise(members))
 
     def defined(self, entry: PrintedEntry) -> tuple[str, Scalar | Matrix] | None:
@@ -128,10 +127,9 @@ class LineAuditor(EquationAuditor):
         if letter.kind != "letter" or letter.text in plain or not set(letters_of(last)) <= plain:
             return None
         try:
-            found = value_of(last, self.reading(letter, last))
+            value = value_of(last, self.reading(letter, last))
         except (Misfit, Unknown):
             return None
-        value = found.value if isinstance(found, Term) else None
         known = self.values.get(letter.text)
         if isinstance(known, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
             value = value[0, 0]
