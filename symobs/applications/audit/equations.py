@@ -16,7 +16,7 @@ from symobs.formula.expression.names import Scope
 from symobs.formula.expression.source import Source, shown
 from symobs.formula.expression.syntax import every, exponent_of, parse
 from symobs.formula.expression.tokenizer import EXPONENTIAL, TOKENS, Tokeniser
-from symobs.formula.tree import Block, Environment, Formula, Letter, Literal, Negative, Product, Sum
+from symobs.formula.tree import Block, Derivative, Environment, Formula, Letter, Literal, Negative, Product, Sum
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.proof.certificate.pointwise import never_together_zero
@@ -530,35 +530,41 @@ def leading_block(C: Matrix | None) -> Matrix | None:
 
 @dataclass(frozen=False)
 class _Signals:
-    """The signals of an environment, collected one by one."""
+    """The signals of an environment, collected one by one; `parts` are the rows of signals."""
 
     formulas: dict[str, Formula | None] = field(default_factory=dict)
     sizes: dict[str, int] = field(default_factory=dict)
     dynamics: dict[str, Formula] = field(default_factory=dict)
+    parts: dict[str, Mapping[str, Formula]] = field(default_factory=dict)
 
     def free(self, name: str, size: int, rate: Formula | None = None) -> None:
         self.formulas[name], self.sizes[name] = None, size
         if rate is not None:
             self.dynamics[name] = rate
 
-    def stacked(self, name: str, size: int, rate: Formula, mentioned: Collection[str]) -> None:
+    def stacked(self, name: str, rate: Formula, parts: Mapping[str, Matrix], *, apart: bool) -> None:
+        """Add a signal and its parts, from which it is stacked where they stand `apart`."""
+        self.parts[name] = {part: _times(rows, name) for part, rows in parts.items()}
+        self.formulas |= self.parts[name]
+        self.free(name, sum(rows.shape[0] for rows in parts.values()), rate)
+        if apart:
+            for part, rows in parts.items():
+                self.free(part, rows.shape[0], Product((Literal(rows), rate)))
+            self.formulas[name] = Block(tuple((Letter(part),) for part in parts))
+
+    def of_components(self, name: str, size: int, rate: Formula, mentioned: Collection[str]) -> None:
         """Add a signal, stacked from its components if the equation contains one of them."""
-        parts = [f"{name}_{i + 1}" for i in range(size)]
-        if not set(parts) & set(mentioned):
-            self.free(name, size, rate)
-            self.formulas |= {part: _row(i, size, name) for i, part in enumerate(parts)}
-            return
-        for i, part in enumerate(parts):
-            self.free(part, 1, Product((Literal(_unit(i, size)), rate)))
-        self.formulas[name] = Block(tuple((Letter(part),) for part in parts))
+        parts = {f"{name}_{i + 1}": Matrix.unit(size, i).T for i in range(size)}
+        self.stacked(name, rate, parts, apart=not parts.keys().isdisjoint(mentioned))
 
-
-def _unit(index: int, size: int) -> Matrix:
-    return Matrix.unit(size, index).T
-
-
-def _row(index: int, size: int, name: str) -> Formula:
-    return Product((Literal(_unit(index, size)), Letter(name)))
+    def apart(self, name: str, whole: str, other: str, *, own: bool) -> None:
+        """Add name = whole - other, which with equations of its `own` takes the place of the other."""
+        if own:
+            rate = Sum((Derivative(Letter(whole)), Negative(self.dynamics[other])))
+            self.free(name, self.sizes[other], rate)
+            self.formulas |= self.parts.get(other, {})
+            name, other = other, name
+        self.formulas[name] = Sum((Letter(whole), Negative(Letter(other))))
 
 
 def _times(matrix: Matrix, signal: str) -> Formula:
@@ -593,7 +599,6 @@ def signals(
     m, answers, called = PlantMatrices.of(plant), answers_of(results), _called(convention)
     K, L, known = answers.get("K"), answers.get("L"), _Signals()
     first, p = leading_block(m.C), 0 if m.C is None else m.C.shape[0]
-    reduced = first is not None and L is not None and L.shape == (plant.order - p, p)
     states = {"x", called["e"], called["e_2"], called["e_d"], *(f"x_{i + 1}" for i in range(plant.order))}
     measured = m.C is not None and not states & set(mentioned)
     if measured:
@@ -604,10 +609,15 @@ def signals(
         known.free("u", m.B.shape[1], Letter("u'"))
         known.free("u'", m.B.shape[1])
     rate = _sum(_times(m.A, "x"), _times(m.B, "u") if m.B is not None else None)
+    reduced = L is not None and L.shape == (plant.order - p, p)
     if first is not None and (reduced or convention.name in MEASURED):
-        _partitioned(known, plant, (L, first), rate, called, right)
+        identity, every = Matrix.identity(plant.order), range(plant.order)
+        parts = {"x_1": identity.select(every[:p], every), "x_2": identity.select(every[p:], every)}
+        known.stacked("x", rate, parts, apart=True)
+        if L is not None and reduced:
+            _reduced_order(known, plant, (L, first), called, right)
     else:
-        known.stacked("x", plant.order, rate, mentioned)
+        known.of_components("x", plant.order, rate, mentioned)
     if L is not None and L.shape == (plant.order, p):
         _full_order(known, m, L, called, (mentioned, right))
     if (L is not None or "K_d" in answers) and called["x_hat"] not in known.formulas:
@@ -642,49 +652,32 @@ def _full_order(
     inputs = None if m.B is None else _times(m.B if through is None else m.B - L @ through, "u")
     closed = m.A if m.C is None else m.A - L @ m.C
     rate = _sum(_times(closed, estimate), inputs, _times(L, "y"))
-    if error in right and estimate not in right:
-        driven = None if m.B is None else _times(m.B, "u")
-        known.free(error, m.A.shape[0], _sum(_times(m.A, "x"), Negative(rate), driven))
-        known.formulas[estimate] = Sum((Letter("x"), Negative(Letter(error))))
-    else:
-        known.stacked(estimate, m.A.shape[0], rate, mentioned)
-        known.formulas[error] = Sum((Letter("x"), Negative(Letter(estimate))))
+    own = error in right and estimate not in right
+    known.of_components(estimate, m.A.shape[0], rate, () if own else mentioned)
+    known.apart(error, "x", estimate, own=own)
 
 
-def _partitioned(
+def _reduced_order(
     known: _Signals,
     plant: StateSpace,
-    gains: tuple[Matrix | None, Matrix],
-    rate: Formula,
+    gains: tuple[Matrix, Matrix],
     called: Mapping[str, str],
     right: Collection[str],
 ) -> None:
-    """Add x = [x₁; x₂], and z, x̂₂ and e₂ of a minimal-order observer, one of which has equations of its own."""
-    m, (L, first) = PlantMatrices.of(plant), gains
-    n, p = plant.order, first.shape[0]
-    for name, rows in (("x_1", range(p)), ("x_2", range(p, n))):
-        known.free(name, len(rows), Product((Literal(Matrix.identity(n).select(rows, range(n))), rate)))
-    known.formulas["x"] = Block(((Letter("x_1"),), (Letter("x_2"),)))
-    if L is None or L.shape != (n - p, p):
-        return
-    found = blocks_of(plant, None, L, STANDARD)
+    """Add z, x̂₂ and e₂ of a minimal-order observer, one of which has equations of its own."""
+    (L, first), found = gains, blocks_of(plant, None, gains[0], STANDARD)
     estimate, error = called["x_hat_2"], called["e_2"]
     own = next((name for name in ("z", estimate, error) if name in right), "z")
-    inputs = None if m.B is None else _times(found["G_u"], "u")  # type: ignore[arg-type]
+    inputs = _times(found["G_u"], "u") if plant.inputs else None  # type: ignore[arg-type]
     z_rate = _sum(_times(found["F_z"], "z"), inputs, _times(found["G_y"], "y"))  # type: ignore[arg-type]
     if own == "z":
-        known.free("z", n - p, z_rate)
+        known.free("z", L.shape[0], z_rate)
         known.formulas[estimate] = Sum((Letter("z"), _times(L, "y")))
     else:
+        known.free(estimate, L.shape[0], Sum((z_rate, _times(L, "y'"))))
         known.formulas["z"] = Sum((Letter(estimate), Negative(_times(L, "y"))))
-        output = _times(L, "y'") if "y" in known.sizes else Product((Literal(L @ first), known.dynamics["x_1"]))
-        estimate_rate = Sum((z_rate, output))
-        if own == estimate:
-            known.free(estimate, n - p, estimate_rate)
-        else:
-            known.free(error, n - p, Sum((known.dynamics["x_2"], Negative(estimate_rate))))
-            known.formulas[estimate] = Sum((Letter("x_2"), Negative(Letter(error))))
-    known.formulas.setdefault(error, Sum((Letter("x_2"), Negative(Letter(estimate)))))
+        known.formulas.setdefault("y'", Derivative(Letter("y")))
+    known.apart(error, "x_2", estimate, own=own == error)
     measured = _times(first.inverse(), "y")
     known.formulas[called["x_hat"]] = Block(((measured,), (Letter(estimate),)))
     known.formulas.setdefault("x_hat_1", measured)
@@ -698,12 +691,4 @@ def _tracking(known: _Signals, answers: Mapping[str, Any], called: Mapping[str, 
         apart = Sum((Letter("x_d"), Negative(Letter(called["x_hat"]))))
         law = (Product((Literal(answers["K"]), apart)), Negative(_times(answers["K_d"], "x_d")))
         known.formulas["u"] = Sum(law)
-    if (error := called["e_d"]) in right:
-        parts = (range(known.sizes["x_1"]), range(known.sizes["x_1"], order))
-        rates = [known.dynamics[name] for name in ("x_1", "x_2")]
-        known.free(error, order, Sum((known.dynamics["x_d"], Negative(Block(tuple((rate,) for rate in rates))))))
-        for name, rows in zip(("x_1", "x_2"), parts, strict=True):
-            chosen = Literal(Matrix.identity(order).select(rows, range(order)))
-            known.formulas[name] = Product((chosen, Sum((Letter("x_d"), Negative(Letter(error))))))
-    else:
-        known.formulas[error] = Sum((Letter("x_d"), Negative(Letter("x"))))
+    known.apart(called["e_d"], "x_d", "x", own=called["e_d"] in right)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
@@ -81,17 +82,7 @@ def _json(audited: Mapping[str, Audited]) -> str:
             "file": path,
             "title": each.title,
             "checked": each.checked,
-            "findings": [
-                {
-                    "where": f.where,
-                    "erratum": f.erratum,
-                    "printed": f.printed,
-                    "right": f.right,
-                    "reason": f.reason,
-                    "holds": f.holds,
-                }
-                for f in each.findings
-            ],
+            "findings": list(map(asdict, each.findings)),
             "notes": list(each.notes),
         }
         for path, each in audited.items()

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from functools import partial
 from itertools import combinations, islice
 from typing import TYPE_CHECKING, Protocol
 
@@ -16,7 +17,10 @@ from symobs.formula.expression.syntax import SyntaxNode, every, exponent_of, let
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator
+    from collections.abc import Callable, Collection, Iterator, Mapping
+
+    Test = Callable[[SyntaxNode, SyntaxNode], bool]
+    Change = Callable[[SyntaxNode], Iterator["Slip"]]
 
 _MOST_TRIED = 1_000
 #: So many parts of changed equations are evaluated for one finding, and for all of a file: of long equations fewer
@@ -56,7 +60,7 @@ class SearchBudget:
 
     left: int = _MOST_PARTS_OF_A_FILE
 
-    def asks(self, true: Callable[[SyntaxNode, SyntaxNode], bool]) -> Callable[[SyntaxNode, SyntaxNode], bool]:
+    def asks(self, true: Test) -> Test:
         """Return a test limited to the trials of one finding; beyond them it answers no."""
         end = max(0, self.left - _MOST_PARTS)
 
@@ -71,22 +75,23 @@ class SearchBudget:
 
 
 def found_slip(
-    left: SyntaxNode, right: SyntaxNode, true: Callable[[SyntaxNode, SyntaxNode], bool], alphabet: Alphabet
+    left: SyntaxNode, right: SyntaxNode, true: Test, alphabet: Alphabet
 ) -> tuple[SyntaxNode, SyntaxNode, str] | None:
     """Return the corrected sides and the reason, None if no single slip explains the equation."""
-    kinds: list[Callable[[SyntaxNode], Iterator[Slip]]] = [
-        lambda side: _digits(side, alphabet),
-        _exchanged,
+    letters = [_letters(alphabet), _letters(alphabet, primed=True)]
+    kinds: list[Change] = [
+        _everywhere(partial(_digits, alphabet)),
+        _everywhere(_exchanged),
         _whole,
-        _stacked,
-        _dropped,
-        lambda side: _primes(side, alphabet),
-        _inverses,
+        _everywhere(_stacked),
+        _everywhere(_dropped),
+        _outermost(partial(_primes, alphabet)),
+        _outermost(_inverses),
         _signs,
-        lambda side: (slip for slip in _letters(side, alphabet) if slip.near),
+        lambda side: (slip for slip in letters[0](side) if slip.near),
         _indices,
-        lambda side: (slip for slip in _letters(side, alphabet) if not slip.near),
-        lambda side: _letters(side, alphabet, primed=True),
+        lambda side: (slip for slip in letters[0](side) if not slip.near),
+        letters[1],
     ]
     for kind in kinds:
         decided = _decided(left, right, true, kind)
@@ -96,7 +101,7 @@ def found_slip(
 
 
 def _throughout(
-    left: SyntaxNode, right: SyntaxNode, true: Callable[[SyntaxNode, SyntaxNode], bool], alphabet: Alphabet
+    left: SyntaxNode, right: SyntaxNode, true: Test, alphabet: Alphabet
 ) -> tuple[SyntaxNode, SyntaxNode, str] | None:
     """Return the equation with one letter replaced throughout, if exactly one replacement fits."""
     both = SyntaxNode("row", (left, right))
@@ -105,23 +110,24 @@ def _throughout(
     for old in twice:
         for new in alphabet.offered(old, primed=False):
             if new not in {*letters_of(both)}:
-                changed = _renamed(both, old, new)
+                changed = _renamed(both, {old: new})
                 if true(*changed.parts):
                     fitting.append((*changed.parts, f"{_printed_for(old, new)} throughout"))
     return fitting[0] if len(fitting) == 1 else None  # type: ignore[return-value]
 
 
-def _renamed(node: SyntaxNode, old: str, new: str) -> SyntaxNode:
-    if node.kind == "letter" and node.text == old:
-        return replace(node, text=new)
-    return replace(node, parts=tuple(_renamed(part, old, new) for part in node.parts))
+def _renamed(node: SyntaxNode, names: Mapping[str, str]) -> SyntaxNode:
+    """Return a tree with other letters."""
+    if node.kind == "letter":
+        return replace(node, text=names.get(node.text, node.text))
+    return replace(node, parts=tuple(_renamed(part, names) for part in node.parts))
 
 
 def _decided(
     left: SyntaxNode,
     right: SyntaxNode,
-    true: Callable[[SyntaxNode, SyntaxNode], bool],
-    kind: Callable[[SyntaxNode], Iterator[Slip]],
+    true: Test,
+    kind: Change,
 ) -> tuple[tuple[SyntaxNode, SyntaxNode, str] | None] | None:
     """Return a pair with the unique slip of a kind; None if there is none, a pair of None if there are several."""
     candidates = [
@@ -149,30 +155,34 @@ def _printed_for(printed: SyntaxNode | str, right: SyntaxNode | str) -> str:
     return f"{printed} is printed for {right}"
 
 
-def _everywhere(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]]) -> Iterator[Slip]:
-    """Yield the tree with one of its parts changed."""
-    yield from change(node)
-    for i, part in enumerate(node.parts):
-        for slip in _everywhere(part, change):
-            yield Slip(with_part(node, i, slip.side), slip.reason, slip.near)
+def _everywhere(change: Change, skips: Callable[[SyntaxNode, SyntaxNode], bool] = lambda _node, _part: False) -> Change:
+    """Return the change of a tree in one of its parts, except below a node where it `skips` a part."""
+
+    def changed(node: SyntaxNode) -> Iterator[Slip]:
+        yield from change(node)
+        for i, part in enumerate(node.parts):
+            for slip in () if skips(node, part) else changed(part):
+                yield replace(slip, side=with_part(node, i, slip.side))
+
+    return changed
 
 
-def _exchanged(side: SyntaxNode) -> Iterator[Slip]:
-    """Yield the side with two entries of a bracket exchanged."""
+def _outermost(change: Change) -> Change:
+    """Return the change of a tree in one of its parts, a letter together with its prime or inverse."""
+    return _everywhere(
+        change, lambda node, part: node.kind in {"primed", "power"} and part.kind in {"letter", "primed"}
+    )
 
-    def change(node: SyntaxNode) -> Iterator[Slip]:
-        if node.kind != "block":
-            return
-        cells = [(i, j) for i, row in enumerate(node.parts) for j in range(len(row.parts))]
-        for (a, b), (c, d) in combinations(cells[:12], 2):
-            first, second = node.parts[a].parts[b], node.parts[c].parts[d]
-            if not letters_of(first) or not letters_of(second):
-                continue
+
+def _exchanged(node: SyntaxNode) -> Iterator[Slip]:
+    """Yield a bracket with two entries exchanged."""
+    cells = [(i, j) for i, row in enumerate(node.parts) for j in range(len(row.parts))]
+    for (a, b), (c, d) in combinations(cells[:12], 2) if node.kind == "block" else ():
+        first, second = node.parts[a].parts[b], node.parts[c].parts[d]
+        if letters_of(first) and letters_of(second):
             once = with_part(node, a, with_part(node.parts[a], b, second))
             twice = with_part(once, c, with_part(once.parts[c], d, first))
             yield Slip(twice, f"{first} and {second} are exchanged")
-
-    return _everywhere(side, change)
 
 
 def _whole(side: SyntaxNode) -> Iterator[Slip]:
@@ -181,82 +191,49 @@ def _whole(side: SyntaxNode) -> Iterator[Slip]:
         yield Slip(SyntaxNode("primed", (side,)), _printed_for(side, f"its transpose {side}'"))
 
 
-def _stacked(side: SyntaxNode) -> Iterator[Slip]:
-    """Yield the side with blocks stacked in rows instead of columns, or the reverse."""
-
-    def change(node: SyntaxNode) -> Iterator[Slip]:
-        if node.kind == "block" and 1 in (len(node.parts), len(node.parts[0].parts)) and letters_of(node):
-            rows = zip(*(row.parts for row in node.parts), strict=True)
-            turned = SyntaxNode("block", tuple(SyntaxNode("row", tuple(row)) for row in rows))
-            yield Slip(turned, _printed_for(node, turned))
-
-    return _everywhere(side, change)
+def _stacked(node: SyntaxNode) -> Iterator[Slip]:
+    """Yield blocks stacked in rows instead of columns, or the reverse."""
+    if node.kind == "block" and 1 in (len(node.parts), len(node.parts[0].parts)) and letters_of(node):
+        rows = zip(*(row.parts for row in node.parts), strict=True)
+        turned = SyntaxNode("block", tuple(SyntaxNode("row", tuple(row)) for row in rows))
+        yield Slip(turned, _printed_for(node, turned))
 
 
-def _dropped(side: SyntaxNode) -> Iterator[Slip]:
-    """Yield the side with rows of a stack left out."""
-
-    def change(node: SyntaxNode) -> Iterator[Slip]:
-        if node.kind != "block" or not 2 <= len(node.parts) <= _MOST_ROWS or not letters_of(node):
-            return
-        for count in range(1, len(node.parts)):
-            for gone in combinations(range(len(node.parts)), count):
-                kept = tuple(row for i, row in enumerate(node.parts) if i not in gone)
-                rows = " and ".join(str(SyntaxNode("block", (node.parts[i],)))[1:-1] for i in gone)
-                are = "rows {} are" if count > 1 else "row {} is"
-                yield Slip(SyntaxNode("block", kept), f"the {are.format(rows)} too many")
-
-    return _everywhere(side, change)
+def _dropped(node: SyntaxNode) -> Iterator[Slip]:
+    """Yield a stack with rows left out."""
+    if node.kind != "block" or not 2 <= len(node.parts) <= _MOST_ROWS or not letters_of(node):
+        return
+    for count in range(1, len(node.parts)):
+        for gone in combinations(range(len(node.parts)), count):
+            kept = tuple(row for i, row in enumerate(node.parts) if i not in gone)
+            rows = " and ".join(str(node.parts[i]) for i in gone)
+            are = "rows {} are" if count > 1 else "row {} is"
+            yield Slip(SyntaxNode("block", kept), f"the {are.format(rows)} too many")
 
 
-def _digits(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
-    """Yield the side with a matrix rounded before use."""
-
-    def change(node: SyntaxNode) -> Iterator[Slip]:
-        name = alphabet.rounded(node) if node.kind == "block" else None
-        if name is not None:
-            exact = f"the digits printed for {name} are too few: only its exact value gives this"
-            yield Slip(SyntaxNode("letter", text=name), exact)
-
-    return _everywhere(side, change)
+def _digits(alphabet: Alphabet, node: SyntaxNode) -> Iterator[Slip]:
+    """Yield a letter for a matrix that was rounded before use."""
+    name = alphabet.rounded(node) if node.kind == "block" else None
+    if name is not None:
+        exact = f"the digits printed for {name} are too few: only its exact value gives this"
+        yield Slip(SyntaxNode("letter", text=name), exact)
 
 
-def _primes(side: SyntaxNode, alphabet: Alphabet) -> Iterator[Slip]:
-    """Yield the side with a transpose or a dot removed or added."""
-
-    def change(node: SyntaxNode) -> Iterator[Slip]:
-        if node.kind == "primed":
-            yield Slip(node.parts[0], _printed_for(node, node.parts[0]))
-            inner = node.parts[0]
-            if inner.kind == "letter" and alphabet.is_signal(inner.text):
-                yield Slip(SyntaxNode("primed", (node,)), _printed_for(node, SyntaxNode("primed", (node,))))
-        elif node.kind == "letter":
-            primed = SyntaxNode("primed", (node,))
-            yield Slip(primed, _printed_for(node, primed))
-
-    return _outermost(side, change)
+def _primes(alphabet: Alphabet, node: SyntaxNode) -> Iterator[Slip]:
+    """Yield a part with a transpose or a dot removed or added."""
+    inner = node.parts[0] if node.kind == "primed" else node
+    primed = SyntaxNode("primed", (node,))
+    if node.kind == "primed":
+        yield Slip(inner, _printed_for(node, inner))
+    if node.kind == "letter" or (node.kind == "primed" and inner.kind == "letter" and alphabet.is_signal(inner.text)):
+        yield Slip(primed, _printed_for(node, primed))
 
 
-def _inverses(side: SyntaxNode) -> Iterator[Slip]:
-    """Yield the side with an inverse removed or added."""
-
-    def change(node: SyntaxNode) -> Iterator[Slip]:
-        if node.kind == "power" and exponent_of(node) == -1:
-            yield Slip(node.parts[0], _printed_for(node, node.parts[0]))
-        elif node.kind == "letter":
-            inverse = SyntaxNode("power", (node, _MINUS_ONE))
-            yield Slip(inverse, _printed_for(node, inverse))
-
-    return _outermost(side, change)
-
-
-def _outermost(node: SyntaxNode, change: Callable[[SyntaxNode], Iterator[Slip]]) -> Iterator[Slip]:
-    """Yield the tree with one of its parts changed, a letter together with its prime or inverse."""
-    yield from change(node)
-    for i, part in enumerate(node.parts):
-        if node.kind not in {"primed", "power"} or part.kind not in {"letter", "primed"}:
-            for slip in _outermost(part, change):
-                yield Slip(with_part(node, i, slip.side), slip.reason, slip.near)
+def _inverses(node: SyntaxNode) -> Iterator[Slip]:
+    """Yield a part with an inverse removed or added."""
+    if node.kind == "letter" or (node.kind == "power" and exponent_of(node) == -1):
+        turned = SyntaxNode("power", (node, _MINUS_ONE)) if node.kind == "letter" else node.parts[0]
+        yield Slip(turned, _printed_for(node, turned))
 
 
 def _signs(side: SyntaxNode) -> Iterator[Slip]:
@@ -264,16 +241,19 @@ def _signs(side: SyntaxNode) -> Iterator[Slip]:
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         for i, part in enumerate(node.parts if node.kind == "sum" else ()):
-            turned = part.parts[0] if part.kind == "negative" else SyntaxNode("negative", (part,))
-            inner = part.parts[0] if part.kind == "negative" else part
-            yield Slip(with_part(node, i, turned), f"the sign of {inner} is wrong")
+            turned, plain = _negated(part)
+            yield Slip(with_part(node, i, turned), f"the sign of {plain} is wrong")
 
-    plain = side.parts[0] if side.kind == "negative" else side
     if side.kind != "sum":
-        yield Slip(
-            plain if side.kind == "negative" else SyntaxNode("negative", (side,)), f"the sign of {plain} is wrong"
-        )
-    yield from _everywhere(side, change)
+        turned, plain = _negated(side)
+        yield Slip(turned, f"the sign of {plain} is wrong")
+    yield from _everywhere(change)(side)
+
+
+def _negated(part: SyntaxNode) -> tuple[SyntaxNode, SyntaxNode]:
+    """Return the negative of a part, and the part without its sign."""
+    plain = part.parts[0] if part.kind == "negative" else part
+    return (SyntaxNode("negative", (part,)) if plain is part else plain), plain
 
 
 def _indices(side: SyntaxNode) -> Iterator[Slip]:
@@ -282,17 +262,14 @@ def _indices(side: SyntaxNode) -> Iterator[Slip]:
     for old in sorted(found):
         for new in map(str, range(1, 7)):
             if new != old:
-                yield Slip(_reindexed(side, old, new), f"index {old} is printed for {new}")
+                names = {
+                    name: f"{name.removesuffix(old)}{new}" for name in letters_of(side) if name.endswith(f"_{old}")
+                }
+                yield Slip(_renamed(side, names), f"index {old} is printed for {new}")
 
 
-def _reindexed(node: SyntaxNode, old: str, new: str) -> SyntaxNode:
-    if node.kind == "letter" and node.text.endswith(f"_{old}"):
-        return replace(node, text=f"{node.text.removesuffix(old)}{new}")
-    return replace(node, parts=tuple(_reindexed(part, old, new) for part in node.parts))
-
-
-def _letters(side: SyntaxNode, alphabet: Alphabet, *, primed: bool = False) -> Iterator[Slip]:
-    """Yield the side with a letter replaced by another, its transpose or its derivative."""
+def _letters(alphabet: Alphabet, *, primed: bool = False) -> Change:
+    """Return the change of a letter for another, its transpose or its derivative."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
         for name in alphabet.offered(node.text, primed=primed) if node.kind == "letter" else ():
@@ -300,8 +277,7 @@ def _letters(side: SyntaxNode, alphabet: Alphabet, *, primed: bool = False) -> I
             right = SyntaxNode("primed", (plain,)) if primed else plain
             yield Slip(right, _printed_for(node, right), near=_stem(name) == _stem(node.text))
 
-    alone = _alone(side)
-    return (slip for slip in _everywhere(side, change) if slip.near or _alone(slip.side) == alone)
+    return lambda side: (slip for slip in _everywhere(change)(side) if slip.near or _alone(slip.side) == _alone(side))
 
 
 def _alone(side: SyntaxNode) -> set[str]:
