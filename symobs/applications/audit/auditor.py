@@ -71,10 +71,13 @@ if TYPE_CHECKING:
     from symobs.problem import Problem
     from symobs.tasks.result import Result
 
-    Kind = tuple[bool, tuple[int, int] | None] | None
+    Kind = tuple[bool, tuple[int, int]] | None
 
 
 # Candidate letters in place of a printed one.
+
+
+_NUMBER = (False, (1, 1))
 
 
 @dataclass
@@ -90,11 +93,10 @@ class CandidateLetters:
 
     def offered(self, name: str, *, primed: bool) -> list[str]:
         """Return the letters that fit in place of `name`; with `primed` those whose transpose or derivative fits."""
-        kinds = {other: kind for other, kind in self.kinds.items() if other != name}
-        if primed:
-            kinds = {other: _turned(kind) for other, kind in kinds.items() if kind is not None and any(kind)}
         wanted = self.kinds[name] if name in self.kinds else self._kind(name)
-        return [other for other, kind in kinds.items() if not self.fit or kind == wanted]
+        turned = {other: _turned(kind) for other, kind in self.kinds.items() if kind not in {None, _NUMBER}}
+        kinds = turned if primed else self.kinds
+        return [other for other, kind in kinds.items() if other != name and (not self.fit or kind == wanted)]
 
     @cached_property
     def kinds(self) -> dict[str, Kind]:
@@ -124,19 +126,14 @@ class CandidateLetters:
         """Return whether a letter is a signal, and its size; numbers count as 1×1 matrices."""
         try:
             found = value_of(SyntaxNode("letter", text=name), Reading(self.environment))
-        except (Misfit, Unknown):
+        except Misfit:
             return None
-        if isinstance(found, Flexible):
-            return None
-        size = shape(found)
-        return isinstance(found, Signal), None if size == (1, 1) else size
+        return None if isinstance(found, Flexible) else (isinstance(found, Signal), shape(found) or (1, 1))
 
 
 def _turned(kind: Kind) -> Kind:
     """Return the kind of the transpose of a matrix, or of the derivative of a signal."""
-    if kind is None or kind[0] or kind[1] is None:
-        return kind
-    return kind[0], (kind[1][1], kind[1][0])
+    return kind if kind is None or kind[0] else (False, (kind[1][1], kind[1][0]))
 
 
 # The `[[printed]]` entries of a file: places and printed equations.
@@ -256,7 +253,7 @@ def _vanishes(node: SyntaxNode, reading: Reading) -> bool:
     try:
         found = value_of(node, reading)
         return equal(*common(found, Scalar.of(0)))
-    except (Misfit, Unknown, *EVALUATION_ERRORS):
+    except (Misfit, *EVALUATION_ERRORS):
         return False
 
 
@@ -475,10 +472,7 @@ class EquationAuditor:
         reading = Reading(environment, self.where)
         try:
             found = value_of(meaning, reading)
-        except (
-            Misfit,
-            Unknown,
-        ):  # it is another equation that uses this letter, or the letter is reported where it stands
+        except Misfit:  # it is another equation that uses this letter, or the letter is reported where it stands
             return environment
         self.gaps += [gap for gap in reading.gaps if gap not in self.gaps]
         if isinstance(found, Flexible):

@@ -20,7 +20,8 @@ from symobs.formula.tree import Block, Derivative, Environment, Formula, Letter,
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.proof.certificate.pointwise import never_together_zero
-from symobs.system.conditions import sign_of, vanishing_factors
+from symobs.system.conditions import sign_where, vanishing_factors
+from symobs.tasks.design.reduced_order.reduced_order_observer import partition
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -78,13 +79,8 @@ class EquationConditions:
         return EquationConditions(text.strip(), _stronger(signs, apart, above), tuple(apart), tuple(above))
 
     def sign(self, value: Scalar) -> str:
-        """Return the certain sign of a value."""
-        found = sign_of(value, self.signs)
-        ratios = [value / other for other in self.above]
-        known = next((ratio.fraction() for ratio in ratios if ratio.is_constant and not ratio.is_zero), None)
-        if known is None or found not in {"real", "nonzero"}:
-            return found
-        return "nonnegative" if known > 0 else "nonpositive"
+        """Return the certain sign of a value, except that what is positive or negative may be 0."""
+        return sign_where(value, self.signs, self.above)
 
     def excludes(self, values: Sequence[Scalar], nonzero: tuple[Scalar, ...]) -> bool:
         """Return whether values are seen not to vanish together here, where factors in `nonzero` do not vanish."""
@@ -490,23 +486,21 @@ def blocks_of(plant: StateSpace, K: Matrix | None, L: Matrix | None, convention:
     if first is None or m.C is None or first == m.C:
         return {}
     n, p = plant.order, m.C.shape[0]
-    upper, lower = range(p), range(p, n)
-    A_11, A_12, A_21, A_22 = (m.A.select(i, j) for i in (upper, lower) for j in (upper, lower))
-    found: dict[str, Value | None] = {"A_11": A_11, "A_12": A_12, "A_21": A_21, "A_22": A_22}
+    parts = partition(plant, Matrix.identity(n))
+    found: dict[str, Value | None] = {f"A_{i}": getattr(parts, f"A{i}") for i in (11, 12, 21, 22)}
+    found |= {"B_1": parts.B1, "B_2": parts.B2}
     found |= {"C": first, "k": Scalar.of(p)} if convention.name in MEASURED else {}
-    B = m.B if m.B is not None else Matrix.zeros(n, 0)
-    B_1, B_2 = B.select(upper, range(B.shape[1])), B.select(lower, range(B.shape[1]))
-    found |= {"B_1": B_1, "B_2": B_2} if m.B is not None else {}
     if K is not None:
-        found |= {f"K_{i}": K.select(range(K.shape[0]), part) for i, part in ((1, upper), (2, lower))}
+        found |= {f"K_{i}": K.select(range(K.shape[0]), part) for i, part in ((1, range(p)), (2, range(p, n)))}
     if L is None or L.shape != (n - p, p):
         return found
-    F = A_22 - L @ first @ A_12
-    u, y = B_2 - L @ first @ B_1, F @ L + (A_21 - L @ first @ A_11) @ first.inverse()
+    measured = L @ first
+    F = parts.A22 - measured @ parts.A12
+    u = None if parts.B1 is None else parts.B2 - measured @ parts.B1  # type: ignore[operator]
+    y = F @ L + (parts.A21 - measured @ parts.A11) @ first.inverse()
     written = convention.written(reduced=True)
-    found |= {"G_u": u, "G_y": y, "F_z": F, written.get("H_z", "H"): y}
-    found |= {"dp": F.characteristic_polynomial(plant.variable)}
-    return found | ({written.get("G_z", "G"): u} if m.B is not None else {})
+    found |= {"G_u": u, "G_y": y, "F_z": F, written.get("H_z", "H"): y, written.get("G_z", "G"): u}
+    return found | {"dp": F.characteristic_polynomial(plant.variable)}
 
 
 def _for_the_observer(m: PlantMatrices, L: Matrix | None, name: str) -> dict[str, Value | None]:

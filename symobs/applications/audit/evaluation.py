@@ -71,7 +71,7 @@ class Misfit(Exception):
     """A printed expression without a value: sizes do not match, or a matrix has no inverse."""
 
 
-class Unknown(Exception):
+class Unknown(Misfit):
     """An unknown letter."""
 
     def __init__(self, name: str) -> None:
@@ -597,7 +597,7 @@ def holds(left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
     """Return whether an equation holds; sizes that do not match make it false."""
     try:
         return equal(*common(value_of(left, reading), value_of(right, reading)))
-    except (Misfit, Unknown, *EVALUATION_ERRORS):  # InputError is a ValueError
+    except (Misfit, *EVALUATION_ERRORS):  # InputError is a ValueError
         return False
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.applications.audit.auditor import EquationAuditor, printed_entries
 from symobs.applications.audit.differences import as_matrix, wrong_entries
-from symobs.applications.audit.evaluation import Misfit, Unknown, common, value_of
+from symobs.applications.audit.evaluation import Misfit, common, value_of
 from symobs.applications.audit.slips import SearchBudget
 from symobs.applications.checking.answers import Answer, Step, as_value, read_like
 from symobs.applications.checking.handwriting import in_letters, letters_of_entries
@@ -128,7 +128,7 @@ class LineAuditor(EquationAuditor):
             return None
         try:
             value = value_of(last, self.reading(letter, last))
-        except (Misfit, Unknown):
+        except Misfit:
             return None
         known = self.values.get(letter.text)
         if isinstance(known, Scalar) and isinstance(value, Matrix) and value.shape == (1, 1):
