@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import field, replace
-from functools import cached_property
 from itertools import chain, combinations, pairwise, product
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.audit import differences
-from symobs.applications.audit.differences import wrong_entries
 from symobs.applications.audit.equations import (
     FUNCTIONS,
-    HIDDEN,
     INSTANTS,
     EquationConditions,
     Gap,
@@ -36,14 +33,12 @@ from symobs.applications.audit.evaluation import (
     holds,
     is_rounded,
     is_spectrum,
-    shape,
     spectral,
     spectrum_text,
     value_of,
 )
-from symobs.applications.audit.slips import SearchBudget, found_slip
+from symobs.applications.audit.slips import CandidateLetters, SearchBudget, found_slip
 from symobs.exact import Matrix, Scalar
-from symobs.exact.algebraic.rounded_decimals import decimals_in
 from symobs.formula.convention import Convention, convention_named
 from symobs.formula.expression import declared_name
 from symobs.formula.expression.source import shown
@@ -70,70 +65,6 @@ if TYPE_CHECKING:
     from symobs.applications.audit.equations import Kept
     from symobs.problem import Problem
     from symobs.tasks.result import Result
-
-    Kind = tuple[bool, tuple[int, int]] | None
-
-
-# Candidate letters in place of a printed one.
-
-
-_NUMBER = (False, (1, 1))
-
-
-@dataclass
-class CandidateLetters:
-    """The letters of an environment, without the names of `fields` of an answer and reserved names.
-
-    Where the sizes `fit` as printed, only letters of the same size may have been meant.
-    """
-
-    environment: Environment
-    fields: frozenset[str]
-    fit: bool = True
-
-    def offered(self, name: str, *, primed: bool) -> list[str]:
-        """Return the letters that fit in place of `name`; with `primed` those whose transpose or derivative fits."""
-        wanted = self.kinds[name] if name in self.kinds else self._kind(name)
-        turned = {other: _turned(kind) for other, kind in self.kinds.items() if kind not in {None, _NUMBER}}
-        kinds = turned if primed else self.kinds
-        return [other for other, kind in kinds.items() if other != name and (not self.fit or kind == wanted)]
-
-    @cached_property
-    def kinds(self) -> dict[str, Kind]:
-        """What may be offered, and the kind of each."""
-        environment = self.environment
-        names = [*environment.values, *environment.signals, *INSTANTS, environment.variable]
-        known = [n for n in dict.fromkeys(names) if n not in {*self.fields, *HIDDEN} and not n.endswith("'")]
-        return {name: self._kind(name) for name in known}
-
-    def is_signal(self, name: str) -> bool:
-        """Return whether a letter is a signal."""
-        return name in self.environment.signals
-
-    def rounded(self, block: SyntaxNode) -> str | None:
-        """Return the letter whose value rounds to a matrix of decimals."""
-        try:
-            printed = as_printed(block, Reading(self.environment))
-        except Misfit:  # a matrix with 1/0 in it rounds nothing
-            return None
-        if not isinstance(printed, Matrix) or not decimals_in(printed):
-            return None
-        known = [(name, value) for name, value in self.environment.values.items() if isinstance(value, Matrix)]
-        alike = ((name, value) for name, value in known if value.shape == printed.shape)
-        return next((name for name, value in alike if not wrong_entries(printed, value)), None)
-
-    def _kind(self, name: str) -> Kind:
-        """Return whether a letter is a signal, and its size; numbers count as 1×1 matrices."""
-        try:
-            found = value_of(SyntaxNode("letter", text=name), Reading(self.environment))
-        except Misfit:
-            return None
-        return None if isinstance(found, Flexible) else (isinstance(found, Signal), shape(found) or (1, 1))
-
-
-def _turned(kind: Kind) -> Kind:
-    """Return the kind of the transpose of a matrix, or of the derivative of a signal."""
-    return kind if kind is None or kind[0] else (False, (kind[1][1], kind[1][0]))
 
 
 # The `[[printed]]` entries of a file: places and printed equations.
@@ -408,11 +339,11 @@ class EquationAuditor:
             pair = common(*sides)
         except Misfit as misfit:
             return Verdict(*self._misfit(printed_left, printed_right, str(misfit), environment))
-        if equal(*pair):
-            return self._where_it_holds(printed_left, printed_right, reading)
         turned = self._turned(printed_left, printed_right, reading)
         if turned is not None:
             return turned
+        if equal(*pair):
+            return self._where_it_holds(printed_left, printed_right, reading)
         rounded = [is_rounded(side, reading) for side in (left, right)]
         if (not letters_of(left) and letters_of(right)) or is_spectrum(right) or rounded == [True, False]:
             left, right, pair = right, left, (pair[1], pair[0])
@@ -426,9 +357,6 @@ class EquationAuditor:
 
     def _where_it_holds(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
         """Return the conditions of a true equation, None if there are none."""
-        turned = self._turned(left, right, reading)
-        if turned is not None:
-            return turned
         values = [value for name in letters_of(left, right) if (value := self.values.get(name)) is not None]
         nonzero = vanishing_factors([value.common_denominator() for value in values], reading.where.signs)
         needed, reasons = exceptions(reading, nonzero)
@@ -516,7 +444,7 @@ class EquationAuditor:
         """Return the error of a value or of a formula for one, None if it differs by rounding only."""
         environment = reading.environment
         exact, printed = map(differences.as_matrix, pair)
-        rounded = as_printed(right, reading) if is_rounded(right, reading) else None
+        rounded = as_printed(right, reading)
         if (
             rounded is not None and differences.as_matrix(rounded).shape == exact.shape
         ):  # else it is a 0 of another size
@@ -524,18 +452,17 @@ class EquationAuditor:
         wrong = differences.wrong_entries(printed, exact)
         if not wrong:
             return None
-        variable = environment.variable
         reason = ""
         if exact.shape == (1, 1):
-            reason = differences.polynomial_reason(printed[0, 0], exact[0, 0], variable)
-        numbers = self._is_written_out(right, environment)
+            reason = differences.polynomial_reason(printed[0, 0], exact[0, 0], environment.variable)
+        numbers = set(letters_of(right)) <= {*self.symbols, *INSTANTS, environment.variable}
         plain = bool(reason) and "; " not in reason and not spectra
-        if not numbers or not (plain or is_evident(left, exact, printed, len(wrong))):
-            slip = self._slip(left, right, environment)
-            if slip is not None:
-                return slip
+        evident = numbers and (plain or is_evident(left, exact, printed, len(wrong)))
+        slip = None if evident else self._slip(left, right, environment)
+        if slip is not None:
+            return slip
         if spectra:
-            return spectrum_text(left, exact[0, 0], variable), "the eigenvalues are others"
+            return spectrum_text(left, exact[0, 0], environment.variable), "the eigenvalues are others"
         factor = None if numbers else self._missing_factor(left, right)
         if factor is not None:
             return factor
@@ -543,16 +470,11 @@ class EquationAuditor:
         value, alike = (exact[0, 0], printed[0, 0]) if isinstance(pair[1], Scalar) else (exact, printed)
         return f"{left} = {differences.value_text(value, alike)}", reason or whole
 
-    def _is_written_out(self, node: SyntaxNode, environment: Environment) -> bool:
-        """Return whether a side has no letters other than the symbols of the problem."""
-        plain = {*self.problem.plant.symbols.signs, *INSTANTS, environment.variable}
-        return set(letters_of(node)) <= plain
-
     def _missing_factor(self, left: SyntaxNode, right: SyntaxNode) -> tuple[str, str] | None:
         """Return the equation with its left side multiplied by a factor from a side of an earlier equation."""
         for node in reversed(self.known):
-            if node.kind == "block" and self.true(SyntaxNode("product", (node, left)), right):
-                fixed = SyntaxNode("product", (node, left))
+            fixed = SyntaxNode("product", (node, left))
+            if node.kind == "block" and self.true(fixed, right):
                 return f"{fixed} = {right}", f"the factor {node} before {left} is missing"
         return None
 
@@ -561,17 +483,13 @@ class EquationAuditor:
     ) -> tuple[str, str]:
         exact, printed = ({name: part for name, part in side.coefficients.items() if not part.is_zero} for side in pair)
         names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
-        wrong = {
-            name: differences.wrong_entries(printed[name], exact[name])
-            for name in names
-            if name in exact and name in printed
-        }
-        single = len(names) == 1 and len(wrong.get(names[0], ())) == 1
-        if not single:
+        both = exact.keys() & printed.keys()
+        single = len(names) == 1 and both.issuperset(names)
+        if not single or len(differences.wrong_entries(printed[names[0]], exact[names[0]])) != 1:
             slip = self._slip(left, right, environment)
             if slip is not None:
                 return slip
-        term = self._missing_term(left, right, exact, printed, environment)
+        term = self._missing_term(left, right, names, environment)
         if term is not None:
             return term
         reasons = []
@@ -590,32 +508,24 @@ class EquationAuditor:
         return "" if terms == str(left) else f"{left} = {terms}", "; ".join(reasons)
 
     def _missing_term(
-        self,
-        left: SyntaxNode,
-        right: SyntaxNode,
-        exact: Mapping[str, Matrix],
-        printed: Mapping[str, Matrix],
-        environment: Environment,
+        self, left: SyntaxNode, right: SyntaxNode, names: Sequence[str], environment: Environment
     ) -> tuple[str, str] | None:
-        """Return the equation with one more term, a product of letters of the equation and one signal."""
-        names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
+        """Return the equation with one more term, a product of letters of the equation and the one signal that differs."""
         if len(names) != 1 or any(part.kind == "number" for part in every(right)):
             return None
-        true, written = self.patience.asks(self.true), self._matrices(letters_of(left, right), environment)
-        offered = self._matrices([*written, *environment.values], environment)
+        true = self.patience.asks(self.true)
+        matrices = {name for name, value in environment.values.items() if isinstance(value, Matrix)}
+        written = [name for name in letters_of(left, right) if name in matrices]
+        offered = list(dict.fromkeys([*written, *(name for name in environment.values if name in matrices)]))
+        terms = right.parts if right.kind == "sum" else (right,)
         for letters, most in ((written[:6], _MOST_LETTERS), (offered[:16], 2)):
             for chosen in (each for count in range(1, most + 1) for each in product(letters, repeat=count)):
                 term = SyntaxNode("product", tuple(SyntaxNode("letter", text=name) for name in (*chosen, names[0])))
-                terms = right.parts if right.kind == "sum" else (right,)
                 for last in (term, SyntaxNode("negative", (term,))):
                     fixed = SyntaxNode("sum", (*terms, last))
                     if true(left, fixed):
                         return f"{left} = {fixed}", f"the term {last} is missing"
         return None
-
-    def _matrices(self, names: Sequence[str], environment: Environment) -> list[str]:
-        values = environment.values
-        return [name for name in dict.fromkeys(names) if isinstance(values.get(name), Matrix)]
 
 
 # Findings of the audit of a problem: false equations, right values and reasons.

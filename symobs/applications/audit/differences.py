@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 from symobs.applications.audit.equations import text_of_value
@@ -94,7 +95,7 @@ def reasons(printed: Matrix, right: Matrix, whole: str) -> str:
         return "all signs are wrong"
     if printed == right.T:
         return "the transpose is printed"
-    if printed == right.inverse() if _regular(right) else False:
+    if _regular(right) and printed == right.inverse():
         return "the inverse is printed"
     exchanged = _exchanged(printed, right)
     if exchanged:
@@ -122,14 +123,13 @@ def _exchanged(printed: Matrix, right: Matrix) -> str:
         (a, b), (c, d) = cells
         if printed[a, b] == right[c, d] and printed[c, d] == right[a, b]:
             return f"the entries ({a + 1}, {b + 1}) and ({c + 1}, {d + 1}) are exchanged"
-    for size, what, line in ((rows, "rows", 0), (columns, "columns", 1)):
-        for i in range(min(size, _MOST_EXCHANGED)):
-            for j in range(i):
-                order = list(range(size))
-                order[i], order[j] = j, i
-                chosen = (order, range(columns)) if line == 0 else (range(rows), order)
-                if printed == right.select(*chosen):
-                    return f"the {what} {j + 1} and {i + 1} are exchanged"
+    for size, what in zip(right.shape, ("rows", "columns"), strict=True):
+        for i, j in combinations(range(min(size, _MOST_EXCHANGED)), 2):
+            order = list(range(size))
+            order[i], order[j] = j, i
+            chosen = (order, range(columns)) if what == "rows" else (range(rows), order)
+            if printed == right.select(*chosen):
+                return f"the {what} {i + 1} and {j + 1} are exchanged"
     return ""
 
 

@@ -134,15 +134,12 @@ def applied(node: SyntaxNode, arguments: Sequence[Matrix], reading: Reading) -> 
         case "Phi":
             return _transition([matrix[0, 0] for matrix in arguments], environment)
     second = arguments[1]
-    if name == "obsv":
-        if first.shape[1] != second.shape[0]:
-            raise no_fit(f"{node.parts[0]} is {sized(first.shape)} and {node.parts[1]} is {sized(second.shape)}")
-        return krylov(second.T, first.T).T
-    if second.shape[0] != first.shape[0]:
+    A, B = (second.T, first.T) if name == "obsv" else (first, second)
+    if B.shape[0] != A.shape[0]:
         raise no_fit(f"{node.parts[0]} is {sized(first.shape)} and {node.parts[1]} is {sized(second.shape)}")
-    if name == "ctrb":
-        return krylov(first, second)
-    reach = krylov(first, second)
+    reach = krylov(A, B)
+    if name != "place":
+        return reach.T if name == "obsv" else reach
     if second.shape[1] != 1 or rank(reach) < first.shape[0]:
         raise Misfit("place has one answer only for one input that reaches everything")
     reading.fails_where([reach.determinant()], f"{node} has not one answer")

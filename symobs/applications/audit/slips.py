@@ -8,17 +8,23 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from functools import partial
+from functools import cached_property, partial
 from itertools import combinations, islice
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
-from symobs.exact import Scalar
+from symobs.applications.audit.differences import wrong_entries
+from symobs.applications.audit.equations import HIDDEN, INSTANTS, Reading
+from symobs.applications.audit.evaluation import Flexible, Misfit, as_printed, shape, value_of
+from symobs.exact import Matrix, Scalar
+from symobs.exact.algebraic.rounded_decimals import decimals_in
 from symobs.formula.expression.syntax import SyntaxNode, every, exponent_of, letters_of, with_part
+from symobs.formula.tree import Environment, Signal
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
+    Kind = tuple[bool, tuple[int, int]] | None
     Test = Callable[[SyntaxNode, SyntaxNode], bool]
     Change = Callable[[SyntaxNode], Iterator["Slip"]]
 
@@ -41,17 +47,66 @@ class Slip:
     near: bool = True
 
 
-class Alphabet(Protocol):
-    """The interface of the letters of an equation for the search for slips."""
+# Candidate letters in place of a printed one.
 
-    def offered(self, name: str, *, primed: bool) -> Collection[str]:
+
+_NUMBER = (False, (1, 1))
+
+
+@dataclass
+class CandidateLetters:
+    """The letters of an environment, without the names of `fields` of an answer and reserved names.
+
+    Where the sizes `fit` as printed, only letters of the same size may have been meant.
+    """
+
+    environment: Environment
+    fields: frozenset[str]
+    fit: bool = True
+
+    def offered(self, name: str, *, primed: bool) -> list[str]:
         """Return the letters that fit in place of `name`; with `primed` those whose transpose or derivative fits."""
+        wanted = self.kinds[name] if name in self.kinds else self._kind(name)
+        turned = {other: _turned(kind) for other, kind in self.kinds.items() if kind not in {None, _NUMBER}}
+        kinds = turned if primed else self.kinds
+        return [other for other, kind in kinds.items() if other != name and (not self.fit or kind == wanted)]
+
+    @cached_property
+    def kinds(self) -> dict[str, Kind]:
+        """What may be offered, and the kind of each."""
+        environment = self.environment
+        names = [*environment.values, *environment.signals, *INSTANTS, environment.variable]
+        known = [n for n in dict.fromkeys(names) if n not in {*self.fields, *HIDDEN} and not n.endswith("'")]
+        return {name: self._kind(name) for name in known}
 
     def is_signal(self, name: str) -> bool:
         """Return whether a letter is a signal."""
+        return name in self.environment.signals
 
     def rounded(self, block: SyntaxNode) -> str | None:
         """Return the letter whose value rounds to a matrix of decimals."""
+        try:
+            printed = as_printed(block, Reading(self.environment))
+        except Misfit:  # a matrix with 1/0 in it rounds nothing
+            return None
+        if not isinstance(printed, Matrix) or not decimals_in(printed):
+            return None
+        known = [(name, value) for name, value in self.environment.values.items() if isinstance(value, Matrix)]
+        alike = ((name, value) for name, value in known if value.shape == printed.shape)
+        return next((name for name, value in alike if not wrong_entries(printed, value)), None)
+
+    def _kind(self, name: str) -> Kind:
+        """Return whether a letter is a signal, and its size; numbers count as 1×1 matrices."""
+        try:
+            found = value_of(SyntaxNode("letter", text=name), Reading(self.environment))
+        except Misfit:
+            return None
+        return None if isinstance(found, Flexible) else (isinstance(found, Signal), shape(found) or (1, 1))
+
+
+def _turned(kind: Kind) -> Kind:
+    """Return the kind of the transpose of a matrix, or of the derivative of a signal."""
+    return kind if kind is None or kind[0] else (False, (kind[1][1], kind[1][0]))
 
 
 @dataclass(frozen=False)
@@ -75,7 +130,7 @@ class SearchBudget:
 
 
 def found_slip(
-    left: SyntaxNode, right: SyntaxNode, true: Test, alphabet: Alphabet
+    left: SyntaxNode, right: SyntaxNode, true: Test, alphabet: CandidateLetters
 ) -> tuple[SyntaxNode, SyntaxNode, str] | None:
     """Return the corrected sides and the reason, None if no single slip explains the equation."""
     letters = [_letters(alphabet), _letters(alphabet, primed=True)]
@@ -101,7 +156,7 @@ def found_slip(
 
 
 def _throughout(
-    left: SyntaxNode, right: SyntaxNode, true: Test, alphabet: Alphabet
+    left: SyntaxNode, right: SyntaxNode, true: Test, alphabet: CandidateLetters
 ) -> tuple[SyntaxNode, SyntaxNode, str] | None:
     """Return the equation with one letter replaced throughout, if exactly one replacement fits."""
     both = SyntaxNode("row", (left, right))
@@ -211,7 +266,7 @@ def _dropped(node: SyntaxNode) -> Iterator[Slip]:
             yield Slip(SyntaxNode("block", kept), f"the {are.format(rows)} too many")
 
 
-def _digits(alphabet: Alphabet, node: SyntaxNode) -> Iterator[Slip]:
+def _digits(alphabet: CandidateLetters, node: SyntaxNode) -> Iterator[Slip]:
     """Yield a letter for a matrix that was rounded before use."""
     name = alphabet.rounded(node) if node.kind == "block" else None
     if name is not None:
@@ -219,7 +274,7 @@ def _digits(alphabet: Alphabet, node: SyntaxNode) -> Iterator[Slip]:
         yield Slip(SyntaxNode("letter", text=name), exact)
 
 
-def _primes(alphabet: Alphabet, node: SyntaxNode) -> Iterator[Slip]:
+def _primes(alphabet: CandidateLetters, node: SyntaxNode) -> Iterator[Slip]:
     """Yield a part with a transpose or a dot removed or added."""
     inner = node.parts[0] if node.kind == "primed" else node
     primed = SyntaxNode("primed", (node,))
@@ -268,7 +323,7 @@ def _indices(side: SyntaxNode) -> Iterator[Slip]:
                 yield Slip(_renamed(side, names), f"index {old} is printed for {new}")
 
 
-def _letters(alphabet: Alphabet, *, primed: bool = False) -> Change:
+def _letters(alphabet: CandidateLetters, *, primed: bool = False) -> Change:
     """Return the change of a letter for another, its transpose or its derivative."""
 
     def change(node: SyntaxNode) -> Iterator[Slip]:
