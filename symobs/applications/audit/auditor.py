@@ -30,7 +30,6 @@ from symobs.applications.audit.evaluation import (
     common,
     equal,
     formula_of,
-    holds,
     is_rounded,
     is_spectrum,
     spectral,
@@ -325,8 +324,9 @@ class EquationAuditor:
 
     def _true(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
         try:
-            return holds(*spectral(left, right, self.problem.plant.variable), reading)
-        except Misfit:
+            sides = spectral(left, right, self.problem.plant.variable)
+            return equal(*common(*(value_of(side, reading) for side in sides)))
+        except (Misfit, *EVALUATION_ERRORS):  # InputError is a ValueError
             return False
 
     def _checked(self, printed_left: SyntaxNode, printed_right: SyntaxNode) -> Verdict | None:
@@ -382,18 +382,15 @@ class EquationAuditor:
         try:
             return value_of(node, reading)
         except Unknown as unknown:
-            raise self._unknown(unknown.name, reading.environment) from None
-
-    def _unknown(self, name: str, environment: Environment) -> UnknownName:
+            name, environment = unknown.name, reading.environment
         from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
 
-        known = [*environment.values, *environment.signals]
-        near = get_close_matches(name, known, 1)
+        near = get_close_matches(name, [*environment.values, *environment.signals], 1)
         repair = f'did you mean "{near[0]}"?' if near else "declare it in [symbols], or say in let what it stands for"
         message = (
             f'the letter "{name}" means nothing in the convention {self.convention.name}, with the tasks of this file'
         )
-        return UnknownName(message, repair=repair, name=name)
+        raise UnknownName(message, repair=repair, name=name)
 
     def _with_let(self, environment: Environment, name: str, meaning: SyntaxNode) -> Environment:
         """Return the environment in which a letter of the entry stands for a value or a signal."""

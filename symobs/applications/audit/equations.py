@@ -408,7 +408,8 @@ def values(plant: StateSpace, results: Sequence[Result], convention: Convention)
     for key, gain in (("K", K), ("L", L)):
         found[written.get(key, key)] = -gain if gain is not None and key in convention.turned else gain
     found |= blocks_of(plant, K, L, convention)
-    found |= _for_the_observer(m, L, name)
+    if name == "plusK-minusHC" and L is not None and m.C is not None and L.shape == m.C.T.shape:
+        found |= {"F": m.A - L @ m.C, "G": m.B}  # of x̂' = F x̂ + G u + H y
     return {key: value for key, value in found.items() if value is not None}
 
 
@@ -501,13 +502,6 @@ def blocks_of(plant: StateSpace, K: Matrix | None, L: Matrix | None, convention:
     written = convention.written(reduced=True)
     found |= {"G_u": u, "G_y": y, "F_z": F, written.get("H_z", "H"): y, written.get("G_z", "G"): u}
     return found | {"dp": F.characteristic_polynomial(plant.variable)}
-
-
-def _for_the_observer(m: PlantMatrices, L: Matrix | None, name: str) -> dict[str, Value | None]:
-    """Return F and G of `plusK-minusHC`, x̂' = F x̂ + G u + H y."""
-    if name != "plusK-minusHC" or L is None or m.C is None or L.shape != (m.A.shape[0], m.C.shape[0]):
-        return {}
-    return {"F": m.A - L @ m.C, "G": m.B}
 
 
 def leading_block(C: Matrix | None) -> Matrix | None:

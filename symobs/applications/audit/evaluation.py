@@ -590,14 +590,6 @@ def _written_as(node: SyntaxNode, reading: Reading) -> str | None:
             return None
 
 
-def holds(left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
-    """Return whether an equation holds; sizes that do not match make it false."""
-    try:
-        return equal(*common(value_of(left, reading), value_of(right, reading)))
-    except (Misfit, *EVALUATION_ERRORS):  # InputError is a ValueError
-        return False
-
-
 def is_rounded(node: SyntaxNode, reading: Reading) -> bool:
     """Return whether a side is a value written out with decimals."""
     value = as_printed(node, reading)
