@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeAlias
 
-from symobs.exact import Matrix, Scalar, rounded
+from symobs.exact import Matrix, Scalar, TooLarge, rounded
 from symobs.exact.core.generators import function_named, identities, identities_at, roots_in
 from symobs.formula.notation import LETTERS
 from symobs.formula.phrases.languages import SPOKEN, Counted, StateChoice
@@ -34,7 +34,7 @@ from symobs.formula.tree import (
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.formula.tree.term import Term
 from symobs.ground.errors import DerivationRejected, SymobsWarning
-from symobs.proof.certificate.claims import UNREADABLE, can_be_shown, verify
+from symobs.proof.certificate.claims import UNREADABLE, as_scalar, can_be_shown, verify
 from symobs.proof.derivation.check import Derivation, after, inside_case, with_domain
 from symobs.proof.derivation.convention_signs import set_apart
 from symobs.proof.derivation.steps import (
@@ -108,19 +108,25 @@ def _decided_case(step: CaseStep, environment: Environment, whole: Derivation) -
     """Return a case without the cases inside that fail, or, where it fails itself, the remark that it is undecided."""
     try:
         inside, _ = _decided(step.steps, inside_case(step, environment), whole)
-    except (DerivationRejected, *UNREADABLE):
-        left_out("a case")
+    except (DerivationRejected, *UNREADABLE) as error:
+        if not isinstance(error, TooLarge) and not isinstance(error.__cause__, TooLarge):
+            left_out("a case")
         relations = step.when.relations if isinstance(step.when, Conjunction) else (step.when,)
-        arithmetic = Exact(environment)
-        zeros = [
-            [evaluate(part, environment, arithmetic) for part in r.members] for r in relations if "=" in r.operators
-        ]
+        zeros, others = ([r for r in relations if ("=" in r.operators) is equal] for equal in (True, False))
         if not zeros:
-            raise
-        first, *others = sorted((left - right for left, right in zeros), key=lambda value: value.size)
-        many = {"count": str(len(others))} if others else {}
-        return Note(sentence("undecided_many" if others else "undecided_case", {"when": first, **many}))
+            when, *_ = sorted(others, key=lambda r: "!=" in r.operators)
+            kind = "apart" if "!=" in when.operators else "positive"
+            return Note(sentence(f"undecided_{kind}", {"when": _difference(when, environment)}))
+        first, *further = sorted((_difference(r, environment) for r in zeros), key=lambda value: value.size)
+        many = {"count": str(len(further))} if further else {}
+        return Note(sentence("undecided_many" if further else "undecided_case", {"when": first, **many}))
     return replace(step, steps=inside)
+
+
+def _difference(relation: Relation, environment: Environment) -> Scalar:
+    """Return the value that a relation compares with 0: positive where one side is greater."""
+    left, right = (as_scalar(evaluate(part, environment, Exact(environment))) for part in relation.members)
+    return right - left if "<" in relation.operators else left - right
 
 
 def shows(facts: Iterable[Relation], environment: Environment) -> bool:

@@ -25,6 +25,8 @@ PHRASES: dict[str, str] = {
     "undecided_many": "The case in which {when} and further polynomials ({count}) vanish simultaneously is not decided here.",
     "undecided_rank": "The case in which the rank is below its generic value is not decided here: the minors are too long to display.",
     "undecided_case": "The case in which {when} vanishes is not decided here.",
+    "undecided_apart": "Not everything is decided here where {when} does not vanish.",
+    "undecided_positive": "Not everything is decided here where {when} is positive.",
     "undecided_together": "The case in which {when} and {other} vanish simultaneously is not decided here.",
     "provided_observability": "The pair ($C$, $A$) is observable if and only if this determinant is nonzero§. What follows holds for {condition}; the remaining cases are treated at the end.",
     "provided_controllability": "The pair ($A$, $B$) is controllable if and only if this determinant is nonzero§. What follows holds for {condition}; the remaining cases are treated at the end.",
@@ -96,6 +98,8 @@ THEOREMS: dict[str, str] = {
 
 NAMING = (
     "undecided_case",
+    "undecided_apart",
+    "undecided_positive",
     "undecided_together",
     "undecided_many",
 )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import symobs
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.formula.tree import Environment, Formula, Literal, Power, Relation
 from symobs.formula.tree.term import Term
 from symobs.ground.errors import DerivationRejected, SymobsWarning
@@ -80,3 +80,32 @@ def test_a_case_whose_check_fails_is_named_as_undecided_and_nothing_else_is(show
     page.steps.append(false)
     with pytest.warns(SymobsWarning), pytest.raises(DerivationRejected):
         without_failing_cases(page.derivation())
+
+
+@pytest.mark.parametrize(
+    ("operator", "key", "named"),
+    [("!=", "undecided_apart", a), (">", "undecided_positive", a), ("<", "undecided_positive", -a)],
+)
+def test_a_case_of_a_sign_is_named_as_undecided_too(operator: str, key: str, named: Scalar) -> None:
+    page = Builder(symobs.StateSpace("[a]", "[1]", symbols={"a": "real"}))
+    false = Equal((Relation((ONE, Literal(Scalar.of(2))), ("=",)),))
+    page.steps.append(CaseStep(relation(page.value(a), operator, 0), (), (false,)))
+    with pytest.warns(SymobsWarning, match="a case is left out"):
+        (step,) = without_failing_cases(page.derivation()).steps
+    assert isinstance(step, Note)
+    assert step.sentence is not None
+    assert step.sentence.key == key
+    assert step.sentence.slots == (("when", Literal(named)),)
+
+
+def test_a_case_beyond_the_limits_is_undecided_and_no_bug(monkeypatch: pytest.MonkeyPatch) -> None:
+    def too_large(*_: Any) -> Any:
+        raise TooLarge("the equations are too long to be decided")
+
+    page = Builder(symobs.StateSpace("[a]", "[1]", symbols={"a": "real"}))
+    page.steps.append(CaseStep(relation(page.value(a), 0), (), (Equal((Relation((ONE, ONE), ("=",)),)),)))
+    monkeypatch.setattr("symobs.proof.derivation.check.on_stratum", too_large)
+    (step,) = without_failing_cases(page.derivation()).steps
+    assert isinstance(step, Note)
+    assert step.sentence is not None
+    assert step.sentence.key == "undecided_case"
