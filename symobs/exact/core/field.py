@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from fractions import Fraction
 
-    from flint import fmpz
-
 
 VARIABLES = ("s", "z", "t")
 
@@ -75,7 +73,18 @@ def _canonical(names: set[str]) -> tuple[str, ...]:
 class Field:
     """Q(names): rational functions with rational coefficients in the generators `names`."""
 
-    __slots__ = ("__weakref__", "context", "functions", "names", "one", "position", "roots", "routes", "zero")
+    __slots__ = (
+        "__weakref__",
+        "context",
+        "functions",
+        "names",
+        "one",
+        "position",
+        "relations",
+        "roots",
+        "routes",
+        "zero",
+    )
 
     names: tuple[str, ...]
     context: fmpz_mpoly_ctx
@@ -94,6 +103,8 @@ class Field:
         self.one = self.context.constant(1)
         #: The generators that are roots of numbers, and their squares.  Data without roots pay for one look at this.
         self.roots = tuple((self.position[name], f.square) for name, f in self.functions.items() if f.square)
+        #: The polynomials x² − p that vanish at the roots.
+        self.relations = [self.context.gen(index) ** 2 - square for index, square in self.roots]
         self.routes: dict[tuple[str, ...], Route] = {}
 
     @staticmethod
@@ -132,24 +143,9 @@ class Field:
 
     def normal(self, polynomial: fmpz_mpoly) -> fmpz_mpoly:
         """Return the normal form of a polynomial: degree at most 1 in each root."""
-        degrees = polynomial.degrees() if self.roots else ()
-        high = [(index, square) for index, square in self.roots if degrees[index] > 1]
-        if not high:
-            return polynomial
-        reduced: dict[tuple[int, ...], fmpz] = {}
-        for powers, coefficient in polynomial.terms():
-            left, number = list(powers), coefficient
-            for index, square in high:
-                half, left[index] = divmod(int(left[index]), 2)
-                number = number * square**half
-            place = tuple(left)
-            reduced[place] = reduced[place] + number if place in reduced else number
-        return self.context.from_dict(reduced)
-
-    @property
-    def relations(self) -> list[fmpz_mpoly]:
-        """The polynomials x² − p that vanish at the roots."""
-        return [self.context.gen(index) ** 2 - square for index, square in self.roots]
+        for relation in self.relations:
+            _, polynomial = divmod(polynomial, relation)
+        return polynomial
 
     def conjugate(self, polynomial: fmpz_mpoly, index: int) -> fmpz_mpoly:
         """Return a polynomial in normal form with the sign of one root changed."""

@@ -107,10 +107,33 @@ def _remainder(field: Field, left: fmpz_mpoly, right: fmpz_mpoly, index: int) ->
 
 def lowest_terms(field: Field, numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:
     """Return a fraction, whose denominator has no root, as one of integral polynomials without common factor."""
-    below = quotient(field, denominator, common_divisor(field, numerator, denominator))
+    rational = numerator.gcd(denominator)
+    numerator, denominator = numerator / rational, denominator / rational
+    below = quotient(field, denominator, _shared(field, numerator, denominator))
     above = field.normal(numerator * below)
     shared = above.gcd(denominator)
     return above / shared, below * (denominator / shared)
+
+
+def _shared(field: Field, numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> fmpz_mpoly:
+    """Return the product of the common factors of a polynomial and one over Q that have roots.
+
+    A factor over Q that is linear in a generator has none over the field: the greatest common divisor of its coefficients
+    is the same there.
+    """
+    parts = [(part, power) for part, power in factors_of(field, denominator)[1] if 1 not in part.degrees()]
+    found, norm = field.one, field.norm(numerator) if parts else field.zero
+    for part, power in parts:
+        if divmod(norm, part)[1]:
+            continue
+        for factor in _irreducible(field, part):
+            for _ in range(power):
+                above, below = field.rationalised(numerator, factor)
+                divided, rest = divmod(above, below.primitive()[1])
+                if rest:
+                    break
+                numerator, found = divided, field.normal(found * factor)
+    return found
 
 
 def factors_over(field: Field, polynomial: fmpz_mpoly) -> list[tuple[fmpz_mpoly, int]]:

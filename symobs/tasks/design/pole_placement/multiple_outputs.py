@@ -11,7 +11,7 @@ from itertools import permutations
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar, factored, independent_rows, primitive_kernel, rank, unit_rows
-from symobs.exact.core.generators import NotWritten
+from symobs.exact.core.generators import NotWritten, symbols_in
 from symobs.formula.tree import Environment, Literal
 from symobs.formula.tree.term import Term
 from symobs.ground.dataclass import dataclass
@@ -245,6 +245,8 @@ class Family:
         """Return which gains the family consists of, and where in a region a denominator vanishes for each of them."""
         if self.general is None:
             return f"{SCOPE}; where none of them has a value is not decided"
+        if symbols_in(self.general) <= {*self.names}:  # a denominator vanishes for some of them only
+            return SCOPE
         factors = (factor for factor, _ in self.general.common_denominator().factors()[1])
         lost = maximal(locus for factor in factors for locus in loci(_coefficients(factor, self.names), region))
         found = [" and ".join(f"{equation} == 0" for equation in locus.equations) for locus in lost]

@@ -43,6 +43,17 @@ def test_the_field_of_pairs(a: tuple[Fraction, Fraction], b: tuple[Fraction, Fra
         assert hash(1 / (1 / one)) == hash(one)
 
 
+def test_common_factors_with_roots_are_divided_out_as_often_as_they_occur() -> None:
+    """(x + √2)³ (y + √2) c / ((x² − 2)² (y² − 2) (x + 1)) = (x + √2) c / ((x − √2)² (y − √2) (x + 1))."""
+    x, y, c = map(Scalar.symbol, "xyc")
+    root = square_root(Scalar.of(2))
+    value = (x + root) ** 3 * (y + root) * c / ((x**2 - 2) ** 2 * (y**2 - 2) * (x + 1))
+    below = (x - root) ** 2 * (y - root) * (x + 1)
+    assert value.numerator * below == value.denominator * (x + root) * c
+    assert [value.denominator.degree(name) for name in "xyc"] == [3, 1, 0]
+    assert [value.numerator.degree(name) for name in "xyc"] == [1, 0, 1]
+
+
 def test_lowest_terms_show_where_a_denominator_vanishes() -> None:
     """(k + √2)/(k² − 2) has no value at √2 alone: its denominator is k − √2."""
     value = (k + R2) / (k**2 - 2)

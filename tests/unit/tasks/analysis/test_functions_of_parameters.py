@@ -45,6 +45,12 @@ def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
         ("matrix_exponential", ("[sqrt(2) sqrt(2); sqrt(2) 0]",), {}),
         # several inputs, and no family is known
         ("state_feedback", ("[0 0; cos(b) a]", "[exp(-a) 1; 0 -b]"), {"poles": "-1, -2"}),
+        # a family of gains beside √2, in which no parameter of the plant is lost
+        (
+            "integral_action",
+            ("[0 0 2; 0 0 1+sqrt(2); 1 1 -2]", "[-2 2; 0 0; 1 0]", "[sqrt(2) 1 -2]"),
+            {"poles": "1, 0, i, -i"},
+        ),
         # no unknown input, and a pair that is observable for a ≠ 0
         ("unknown_input_observer", ("[1 a; 0 2]", None, "[1 0]"), {"E": "[0; 0]", "poles": "-1, -2"}),
         # a case in a case, where the matrices of the outer one have equal values but divide by cos b
