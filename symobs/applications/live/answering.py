@@ -302,6 +302,8 @@ def answer(request: object) -> dict[str, Any]:
         return head | {"status": "undecided", "message": "memory was not enough"}
     except RecursionError:
         return head | {"status": "undecided", "message": "nested too deep"}
+    except OverflowError:  # exact numbers have no bounds, those of a screen have
+        return head | {"status": "undecided", "message": "a number is too large or too small to be drawn"}
     except Exception as error:  # noqa: BLE001 - the last line of defence: a bug of ours, said as such
         return head | _bug(error)
 

@@ -245,6 +245,13 @@ def test_a_value_that_cannot_be_is_refused(at: dict[str, object], where: str, me
     assert message in found["errors"][0]["message"]
 
 
+@pytest.mark.parametrize("poles", ["-1e400+2i, -1e400-2i", "-1e-400+1e-400i, -1e-400-1e-400i", "-1e400, -2"])
+def test_what_no_screen_can_draw_is_undecided(poles: str) -> None:
+    specification = {"control_poles": poles, "observer_poles": "-3, -4"}
+    found = answer({"schema": "symobs-live/1", "problem": {**SERVO, "specification": specification}})
+    assert (found["status"], found["message"]) == ("undecided", "a number is too large or too small to be drawn")
+
+
 def test_goals_are_held_against_poles_and_gains() -> None:
     poles = {"control_poles": "-2, -2", "observer_poles": "-5+5i, -5-5i"}
     # The modes settle in ln 50 / 2 = 1.956, the pair overshoots by 100 e^(-π) = 4.32 %, L = (9, 41).
