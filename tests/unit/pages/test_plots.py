@@ -175,7 +175,7 @@ def test_a_line_is_drawn_as_it_is(last: str, line: str) -> None:
     shown = str(result.to("text"))
     rows = re.findall(r" [│┤]([#.]{41})$", shown, re.MULTILINE)
     (plot,) = (line.step for line in lines_of(result.derivation) if isinstance(line.step, Plot))
-    (left, right), (bottom, top) = (map(float, ends) for ends in plot.picture.window)
+    (left, right), (bottom, top) = (map(float, ends) for ends in plot.picture.window)  # type: ignore[arg-type]
     assert len(rows) == 17
     for number, row in enumerate(rows):
         k = top + (bottom - top) * (number + 0.5) / 17
