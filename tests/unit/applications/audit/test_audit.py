@@ -39,6 +39,13 @@ def test_what_is_wrong_is_named_with_what_is_right(relation: str, right: str, re
     assert reason in found.reason
 
 
+def test_an_output_of_a_time_varying_plant_may_be_written_in_either_way() -> None:
+    plant = {"A": "[0 1; 0 0]", "C": "[exp(-t) 0]"}
+    printed = [{"relation": f"y = [{entry} 0] x"} for entry in ("exp(-t)", "1/exp(t)", "exp(-2*t)")]
+    text = problem(tasks=["time_varying_observability"], plant=plant, specification={}, printed=printed)
+    assert [found.printed for found in audit(read(text)).wrong] == ["y = [exp(-2 t) 0] x"]
+
+
 def test_each_link_of_a_chain_is_checked() -> None:
     left, right = findings("A - L C = [-19 1; -81 1] = [-19 1; -81 -1]")
     assert left.right == "A - L C = [-19 1; -81 -1]"
