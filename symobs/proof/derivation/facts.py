@@ -84,8 +84,11 @@ def _never_divides(value: Scalar, environment: Environment) -> bool:
 
 
 def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  # noqa: FBT001
-    polynomial = polynomial_of(value, environment)
-    return stability(polynomial, environment.variable, environment.signs, discrete=discrete).verdict
+    """Return the verdict on a polynomial where the relations hold, or as it is written, whichever tells more."""
+    variable, signs = environment.variable, environment.signs
+    found = stability(polynomial_of(value, environment), variable, signs, discrete=discrete).verdict
+    is_same = value.denominator.is_constant and value.coefficients(variable)[0].is_constant  # of the same degree
+    return stability(value, variable, signs, discrete=discrete).verdict if found == "conditional" and is_same else found
 
 
 def _degrees(value: Scalar, environment: Environment) -> tuple[int, int]:

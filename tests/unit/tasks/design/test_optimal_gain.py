@@ -394,6 +394,14 @@ def test_a_case_whose_loop_is_not_seen_to_be_stable_is_undecided() -> None:
     assert case.result is None
 
 
+def test_a_factor_that_is_stable_as_it_is_written_is_so_in_any_form() -> None:
+    """The Hamiltonian's polynomial at a = 1 is s⁴ − 22 s² + 81 by NumPy; a² + 8 is seen to be positive, r² − 1 is not."""
+    found = symobs.kalman(symobs.StateSpace("[-2 a; a 0]", "[0; 1]", "[0 2]", symbols={"a": "real"}), W="1", V="1/4")
+    factor, s, a = (sympy.sympify(str(found.polynomial)), *sympy.symbols("s a"))
+    assert sympy.expand((factor * factor.subs(s, -s)).subs(a, 1)) == s**4 - 22 * s**2 + 81
+    assert "stable region" in found.to("text")
+
+
 def test_a_page_is_written_where_the_roots_of_a_case_are_too_many_beside_the_others() -> None:
     signs = {"a": "positive", "b": "negative", "c": "real", "q": "positive"}
     plant = symobs.StateSpace("[-c 3; -1 -1]", "[b; -a]", symbols=signs)
