@@ -20,7 +20,7 @@ from symobs.formula.tree import Block, Derivative, Environment, Formula, Letter,
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.proof.certificate.pointwise import never_together_zero
-from symobs.system.conditions import sign_where, vanishing_factors
+from symobs.system.conditions import sign_of, vanishing_factors
 from symobs.tasks.design.reduced_order.reduced_order_observer import partition
 
 if TYPE_CHECKING:
@@ -79,8 +79,13 @@ class EquationConditions:
         return EquationConditions(text.strip(), _stronger(signs, apart, above), tuple(apart), tuple(above))
 
     def sign(self, value: Scalar) -> str:
-        """Return the certain sign of a value, except that what is positive or negative may be 0."""
-        return sign_where(value, self.signs, self.above)
+        """Return the certain sign of a value."""
+        found = sign_of(value, self.signs)
+        ratios = [value / other for other in self.above if not other.is_zero]
+        known = next((ratio.fraction() for ratio in ratios if ratio.is_constant and not ratio.is_zero), None)
+        if known is None or found not in {"real", "nonzero"}:  # other ratios have denominators that may vanish
+            return found
+        return "nonnegative" if known > 0 else "nonpositive"
 
     def excludes(self, values: Sequence[Scalar], nonzero: tuple[Scalar, ...]) -> bool:
         """Return whether values are seen not to vanish together here, where factors in `nonzero` do not vanish."""

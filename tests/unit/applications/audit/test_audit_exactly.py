@@ -71,6 +71,13 @@ def test_the_root_of_a_square_has_a_square() -> None:
     assert findings("sqrt(c^2)^2 = c^2", "sqrt(c^4) = c^2", "sqrt(c^2) = sqrt(c^2)", **CHAIN) == []
 
 
+@tabled
+def test_a_condition_says_nothing_where_its_factor_may_vanish(relation: str) -> None:
+    """At a = 0 and c = −1 each condition holds, and the equation does not."""
+    symbols = {"a": "real", "c": "real"}
+    assert findings(relation, plant={"A": "[0 1; 0 0]", "C": "[c a]"}, symbols=symbols) != []
+
+
 # -- eigenvalues -------------------------------------------------------------------------------------------------------
 
 
