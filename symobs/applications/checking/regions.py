@@ -389,9 +389,13 @@ def part_described(result: StabilityRegion, union: Union) -> str:
     if result.region is None:
         return ""
     pieces: list[set[bool]] = [set()]
+    before: Height | None = None
     try:
         for fixed, name, height, right in _pieces(result.region, union):
             mine = _holds(union, fixed, name, height)
+            if not isinstance(height, RealNumber) and not isinstance(before, RealNumber):
+                pieces.append(set())  # the value between them is excluded by the declared sign
+            before = height
             if right:
                 pieces[-1].add(mine)
             elif mine:
@@ -425,8 +429,9 @@ def _slips(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
         yield "margin_forgotten", f"these are the conditions without the margin {boundary.margin}"
     if len(union) == 1:
         yield from _slips_of_one(result, union)
-    other = _within(result, replace(boundary, discrete=not boundary.discrete)) if boundary.margin.is_zero else None
-    if union and other is not None and not other.empty and _same(other, union):
+    has_other = bool(union) and boundary.margin.is_zero
+    other = _within(result, replace(boundary, discrete=not boundary.discrete)) if has_other else None
+    if other is not None and not other.empty and _same(other, union):
         stable = "all real parts < 0" if boundary.discrete else "all |z| < 1"
         yield "discrete", f"these are the conditions for {stable}, which is stability in the other kind of time"
 

@@ -95,13 +95,13 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     """Return the responses of a design, those of the input apart; raises `NoResponse` or, for what was asked, `InputError`.
 
     Where modes beside the slowest one add up, so that a response that converges has not settled by the usual end, it is
-    drawn for half as long again.
+    drawn for half as long again, or longer.
     """
     signals, discrete = _signals(result, asked), result.plant.is_discrete
     end = _end(signals.loop, asked.end, discrete=discrete)
     found = _drawn(signals, end, asked, discrete=discrete)
     lines = found["lines"] + found.get("effort", {}).get("lines", [])
-    is_open = any("last" in line and "settles" not in line for line in lines)
+    is_open = any(line.get("peak", "0") != "0" and "settles" not in line for line in lines)
     if asked.end is None and is_open and _converges(signals.loop, discrete=discrete):
         later = Fraction(min(ceil(end * _LONGER), _SAMPLES)) if discrete else rounded_up(float(end * _LONGER))
         if end < later <= _LONGEST:

@@ -60,7 +60,7 @@ function parts(source) {
 /** Read poles: handles {re, im}, a pair once, and texts that no handle can hold. @param {string} source */
 function handles(source) {
   const waiting = parts(source).map((entry) => {
-    const plain = entry.replace(/\s+/g, "").replace(/−/g, "-").replace(/[ij]\*?([\d./]+)$/, "$1i");
+    const plain = entry.replace(/\s+/g, "").replace(/−/g, "-").replace(/(^|[+-])[ij]\*?([\d./]+)$/, "$1$2i");
     const real = rational(plain);
     if (real) return { re: real, im: [0, 1] };
     const found = /^([+-]?[\d./]+(?=[+-]))?([+-]?[\d./]*)\*?[ij]$/.exec(plain);
@@ -184,6 +184,7 @@ export function mount(element, transport, options = {}) {
   let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
   let aborted = new AbortController(), language = null, notice = "", point = null, pinned = [], turns = 0, turning = 0, isLetGo = false, fill = () => {}, release = () => {};
   const unfolded = new Set();
+  let traced = null;  // the answer whose line is shown as soon as there is a derivation
   let origin = encoded(s), steps = [origin], reached = 0;
   const el = {}, focused = () => root.getRootNode().activeElement, find = (name, of = "where") => root.querySelector(`[data-${of}="${CSS.escape(name)}"]`);
 
@@ -390,6 +391,8 @@ export function mount(element, transport, options = {}) {
       if (got.html) {
         el.html.innerHTML = got.html;
         el.html.querySelectorAll("h3").forEach(folded);
+        if (traced?.isConnected) trace(traced);
+        traced = null;
       }
       else el.html.replaceChildren(h("p", { class: "pale" }, got.message ?? got.errors?.map((e) => e.message).join("; ") ?? w("no_derivation")), ...(got.status === "undecided" ? [h("button", { onclick: () => rest(0) }, w("try_again"))] : []));
       el.page.setAttribute("aria-busy", "false");
@@ -408,7 +411,8 @@ export function mount(element, transport, options = {}) {
   /** Show the line of the derivation that gives an answer: the last with its value, else the last with its name. */
   function trace(card) {
     if (!open("page")) fold("page", false);
-    const told = card.querySelector("math").textContent, lines = isOld("page") ? [] : [...el.html.querySelectorAll("math")];
+    if (isOld("page")) { traced = card; return; }
+    const told = card.querySelector("math").textContent, lines = [...el.html.querySelectorAll("math")];
     const line = lines.findLast((m) => m.textContent.includes(told)) ?? lines.findLast((m) => m.textContent.startsWith(told.replace(/=.*/, "="))) ?? el.page;
     for (let part = line; (part = part.parentNode.closest("details"));) part.open = true;
     line.scrollIntoView({ block: "center" });

@@ -172,3 +172,6 @@ def test_a_piece_of_a_region_is_no_false_line_and_not_the_region() -> None:
         (found,) = PIECES.report({"step": [{"relation": line}]}).lines
         assert (found.verdict, reason in found.reason, bool(found.reason)) == (verdict, True, bool(reason))
     assert "some of the pieces of the region" in part(PIECES, "h > 1").reason
+    parted = region("s + h^2", "h", symbols='h = "nonzero"')  # stable but at h = 0, which is excluded
+    (found,) = parted.report({"step": [{"relation": "h > 0"}]}).lines
+    assert found.verdict == "undecided"
