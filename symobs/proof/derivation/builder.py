@@ -6,7 +6,8 @@ import re
 import warnings
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs.exact import Matrix, Scalar, TooLarge, rounded
 from symobs.exact.core.generators import function_named, identities, identities_at, roots_in
@@ -425,8 +426,16 @@ class Builder:
         return table
 
     def plot(self, picture: Picture, subject: Member, say: str = "", **slots: Slot) -> None:
-        """Show where a polynomial is stable, or how its roots move; a picture that its check rejects is left out."""
-        self.steps.append(Plot(picture, formula_of(subject), sentence(say, slots) if say else None))
+        """Show where a polynomial is stable, or how its roots move; a picture that its check rejects is left out.
+
+        So is one whose window is too small beside its place, or too large, for floating point.
+        """
+        whole: tuple[Any, ...] = picture.window
+        ends = whole if isinstance(whole[0], tuple) else (whole,)
+        if all(
+            max(abs(low), abs(high), Fraction(1, 10**280)) < min((high - low) * 10**12, 10**280) for low, high in ends
+        ):
+            self.steps.append(Plot(picture, formula_of(subject), sentence(say, slots) if say else None))
 
     @contextmanager
     def section(self, key: str, **slots: Slot) -> Iterator[None]:

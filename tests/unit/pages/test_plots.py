@@ -139,6 +139,16 @@ def test_matplotlib_draws_the_same(name: str) -> None:
     assert drawn_by_matplotlib(picture, "pdf", latex, text).startswith(b"%PDF-")
 
 
+@pytest.mark.parametrize("place", ["10^20", "10^40"])
+def test_a_region_that_floating_point_cannot_draw_has_a_page_without_a_picture(place: str) -> None:
+    """The roots are real and negative between two lines that are 1 apart."""
+    polynomial = f"(s+a-{place})*(s+{place}+1-a)*(s+b)*(s+1-b)"
+    result = symobs.stability_region(polynomial=polynomial, parameters=("a", "b"))
+    for name in ("text", "latex", "html"):
+        assert len(str(result.to(name))) > 1000
+    assert not [line for line in lines_of(result.derivation) if isinstance(line.step, Plot)]
+
+
 def test_without_matplotlib_the_repair_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
