@@ -292,8 +292,8 @@ class EquationAuditor:
     def environment(self, left: SyntaxNode, right: SyntaxNode) -> Environment:
         """Return the environment of an equation; the equations of signals depend on the signals that occur."""
         inside = letters_of(*(self.let[name] for name in letters_of(left, right) if name in self.let))
-        names = self.telling.difference(self.symbols)
-        mentioned = (names.intersection([*letters_of(left, right), *inside]), names.intersection(letters_of(right)))
+        names = self.telling.difference(self.symbols, self.let)
+        mentioned = tuple(names.intersection([*letters_of(*sides), *inside]) for sides in ((left, right), (right,)))
         if mentioned not in self.environments:
             made = signals(self.problem.plant, self.results, self.convention, *mentioned)
             environment = made.extended_by(values=dict(self.values), signs=dict(self.symbols))

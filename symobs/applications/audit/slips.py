@@ -225,7 +225,7 @@ def _everywhere(change: Change, skips: Callable[[SyntaxNode, SyntaxNode], bool] 
 def _outermost(change: Change) -> Change:
     """Return the change of a tree in one of its parts, a letter together with its prime or inverse."""
     return _everywhere(
-        change, lambda node, part: node.kind in {"primed", "power"} and part.kind in {"letter", "primed"}
+        change, lambda node, part: node.kind in {"primed", "power", "at"} and part.kind in {"letter", "primed"}
     )
 
 

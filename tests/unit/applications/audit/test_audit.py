@@ -46,6 +46,25 @@ def test_an_output_of_a_time_varying_plant_may_be_written_in_either_way() -> Non
     assert [found.printed for found in audit(read(text)).wrong] == ["y = [exp(-2 t) 0] x"]
 
 
+@pytest.mark.parametrize(
+    ("let", "relation", "wrong"),
+    [
+        ({"e": "x_hat - x"}, "e' = (A - L C) e", 0),
+        ({"e": "x_hat - x"}, "e' = (A + L C) e", 1),
+        ({"e": "x_hat - x"}, "x_hat = x - e", 1),
+        ({"x_hat": "x - e"}, "e = x - x_hat", 0),
+        ({"x_1": "[1 0] x"}, "y = x_1", 0),
+    ],
+    ids=str,
+)
+def test_a_letter_may_be_said_in_the_letters_that_stand_on_it(let: dict[str, str], relation: str, wrong: int) -> None:
+    assert len(audit(read(problem(printed=[{"relation": relation, "let": let}]))).findings) == wrong
+
+
+def test_where_a_function_has_no_value_its_inverse_is_not_proposed() -> None:
+    assert finding("P(-1) = 0").reason == "P(-1) has no value"  # P = 1/(s (s + 1))
+
+
 def test_each_link_of_a_chain_is_checked() -> None:
     left, right = findings("A - L C = [-19 1; -81 1] = [-19 1; -81 -1]")
     assert left.right == "A - L C = [-19 1; -81 -1]"
