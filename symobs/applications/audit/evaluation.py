@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from symobs.applications.audit.differences import as_matrix
 from symobs.applications.audit.equations import BEGIN, END, INSTANTS, krylov, text_of_value
 from symobs.exact import Matrix, Scalar, rank, roots_of
+from symobs.exact.algebraic.real_algebraic import RealNumber, roots_of_scalar
 from symobs.exact.algebraic.rounded_decimals import as_generator, decimals_in, polynomial_of
 from symobs.exact.core.generators import derivative, function, identities, square_root, substitute
 from symobs.exact.core.polynomial import product_of
@@ -143,7 +144,17 @@ def applied(node: SyntaxNode, arguments: Sequence[Matrix], reading: Reading) -> 
     if second.shape[1] != 1 or rank(reach) < first.shape[0]:
         raise Misfit("place has one answer only for one input that reaches everything")
     reading.fails_where([reach.determinant()], f"{node} has not one answer")
-    return _placed(first, reach, arguments[2][0, 0], environment.variable)
+    polynomial, variable = _number(node.parts[2], arguments[2]), environment.variable
+    coefficients = polynomial.coefficients(variable) if polynomial.is_polynomial_in(variable) else []
+    if len(coefficients) != first.shape[0] + 1 or not coefficients[0].is_one:
+        raise Misfit(f"{node.parts[2]} is no polynomial of degree {first.shape[0]} that begins with 1")
+    return _placed(first, reach, polynomial, variable)
+
+
+def _number(part: SyntaxNode, value: Matrix) -> Scalar:
+    if value.shape != (1, 1):
+        raise Misfit(f"{part} is {sized(value.shape)}, where a number belongs")
+    return value[0, 0]
 
 
 def _minors(matrix: Matrix, order: int) -> list[Scalar]:
@@ -552,10 +563,23 @@ def _integral(parts: Sequence[SyntaxNode], reading: Reading) -> Matrix:
     whole = antiderivative(integrand, name)
     if whole is None or derivative(whole, name) != integrand:
         raise InputError(f"the integral of {parts[0]} has no closed form here", repair="leave the entry out")
-    found = substitute(whole, {name: end[0, 0]}) - substitute(whole, {name: begin[0, 0]})
+    ends = [_number(part, end) for part, end in zip(parts[2:], (begin, end), strict=True)]
+    if _may_have_pole(integrand.common_denominator(), name, ends):
+        raise InputError(f"the integrand {parts[0]} may have a pole between the ends", repair="leave the entry out")
+    found = substitute(whole, {name: ends[1]}) - substitute(whole, {name: ends[0]})
     new = found.common_denominator() / integrand.common_denominator()
     reading.fails_where([new], f"the integral of {parts[0]} is another")
     return found
+
+
+def _may_have_pole(below: Scalar, name: str, ends: Sequence[Scalar]) -> bool:
+    """Return whether a denominator may vanish between two numbers."""
+    if name not in below.names:
+        return False
+    if below.names != {name} or any(end.names for end in ends):
+        return True
+    low, high = sorted(end.fraction() for end in ends)
+    return any(not (root < RealNumber.of(low) or RealNumber.of(high) < root) for root in roots_of_scalar(below, name))
 
 
 def as_printed(node: SyntaxNode, reading: Reading) -> Matrix | Scalar | None:

@@ -61,6 +61,18 @@ def test_a_letter_may_be_said_in_the_letters_that_stand_on_it(let: dict[str, str
     assert len(audit(read(problem(printed=[{"relation": relation, "let": let}]))).findings) == wrong
 
 
+@pytest.mark.parametrize(
+    "relation", ["place(A, B, s+1) = [1 1]", "place(A, B, A) = [0 0]", "integral(t, t, 0, [1 2]) = 1/2"]
+)
+def test_a_function_takes_what_it_is_defined_for(relation: str) -> None:
+    assert "belongs" in (reason := finding(relation).reason) or "of degree 2 that begins with 1" in reason
+
+
+def test_an_integral_over_a_pole_is_none() -> None:
+    with pytest.raises(ProblemErrors, match="may have a pole between the ends"):
+        findings("integral(1/t^2, t, -1, 1) = -2")
+
+
 def test_where_a_function_has_no_value_its_inverse_is_not_proposed() -> None:
     assert finding("P(-1) = 0").reason == "P(-1) has no value"  # P = 1/(s (s + 1))
 
