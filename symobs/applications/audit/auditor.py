@@ -27,6 +27,7 @@ from symobs.applications.audit.evaluation import (
     Printed,
     Unknown,
     as_printed,
+    cannot_be_told_apart,
     common,
     equal,
     formula_of,
@@ -344,6 +345,7 @@ class EquationAuditor:
             return turned
         if equal(*pair):
             return self._where_it_holds(printed_left, printed_right, reading)
+        self.require_told_apart(*pair)
         rounded = [is_rounded(side, reading) for side in (left, right)]
         if (not letters_of(left) and letters_of(right)) or is_spectrum(right) or rounded == [True, False]:
             left, right, pair = right, left, (pair[1], pair[0])
@@ -354,6 +356,11 @@ class EquationAuditor:
         if found is None:  # only rounding parts them
             return self._where_it_holds(printed_left, printed_right, reading)
         return Verdict(*found)
+
+    def require_told_apart(self, left: Printed, right: Printed) -> None:
+        """Raise `BudgetExceeded` where two sides may be equal although no certificate says so."""
+        if cannot_be_told_apart(left, right, self.symbols):
+            raise BudgetExceeded("the sides agree at a point, and whether they are equal everywhere is not decided")
 
     def _where_it_holds(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
         """Return the conditions of a true equation, None if there are none."""

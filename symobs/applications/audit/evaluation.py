@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from itertools import combinations, islice, product
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.applications.audit.differences import as_matrix
 from symobs.applications.audit.equations import BEGIN, END, INSTANTS, krylov, text_of_value
 from symobs.exact import Matrix, Scalar, rank, roots_of
-from symobs.exact.algebraic.real_algebraic import RealNumber, roots_of_scalar
+from symobs.exact.algebraic.enclosure import near
+from symobs.exact.algebraic.real_algebraic import RealNumber, root_of_fraction, roots_of_scalar
 from symobs.exact.algebraic.rounded_decimals import as_generator, decimals_in, polynomial_of
-from symobs.exact.core.generators import derivative, function, identities, square_root, substitute
+from symobs.exact.core.generators import (
+    derivative,
+    function,
+    functions_in,
+    identities,
+    roots_in,
+    square_root,
+    substitute,
+    symbols_in,
+)
 from symobs.exact.core.polynomial import product_of
 from symobs.exact.linear_algebra.elimination import reduced_echelon
 from symobs.exact.time_functions.antiderivative import antiderivative
@@ -39,7 +50,7 @@ from symobs.ground.errors import BudgetExceeded, InputError
 from symobs.proof.certificate.claims import EVALUATION_ERRORS, verify
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.applications.audit.equations import Reading
     from symobs.formula.tree import Formula
@@ -238,8 +249,50 @@ class _Certified(Exact):
 
     def equal(self, left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
         meanings, relations = identities((left, right))
-        there = Environment(coefficients=meanings, relations=relations)
+        there = Environment(coefficients=meanings, relations=(*relations, *_products_of_roots((left, right))))
         return bool(verify(Relation((Literal(left), Literal(right)), ("=",)), there)[0])
+
+
+def _products_of_roots(values: Sequence[Scalar | Matrix]) -> Iterator[Scalar]:
+    """Yield what vanishes because √u √v is √(u v) where they are real."""
+    roots = list(dict.fromkeys(root for value in values for root in roots_in(value)))[:_MOST_ROOTS]
+    parts = {(f,): f.argument for f in roots} | {(f, g): f.argument * g.argument for f, g in combinations(roots, 2)}
+    for h, (names, argument) in product(roots, parts.items()):
+        ratio = h.argument / argument
+        if h not in names and ratio.is_constant and ratio.fraction() > 0:
+            whole = product_of(Scalar.symbol(f.name) for f in names)
+            yield Scalar.symbol(h.name) - root_of_fraction(ratio.fraction(), 2) * whole
+
+
+#: Of more roots no products are compared.
+_MOST_ROOTS = 6
+
+
+def cannot_be_told_apart(left: Printed, right: Printed, signs: Mapping[str, str]) -> bool:
+    """Return whether unequal values with roots or functions agree at a point, so that they may be equal there and everywhere.
+
+    Roots and functions count as independent of each other, which they are not always: √(3 + 2√2) is 1 + √2.
+    """
+    values = [value for value in (left, right) if isinstance(value, (Scalar, Matrix))]
+    if len(values) < 2 or not functions_in(values):
+        return False
+    names = sorted(set().union(*map(symbols_in, values)))
+    point = {
+        name: Scalar.rational((2 * k + 3) * (-1 if signs.get(name, "") in _BELOW else 1), 2 * k + 11)
+        for k, name in enumerate(names)
+    }
+    try:
+        apart = [
+            near(entry, _NEAR)
+            for entry in as_matrix(substitute(values[0], point) - substitute(values[1], point)).entries
+        ]
+    except (ArithmeticError, ValueError):
+        return True
+    return all(entry is None or abs(entry) < Fraction(1, 2 ** (_NEAR - 1)) for entry in apart)
+
+
+#: Values that agree to so many bits are not said to be different; signs of what is drawn from below 0.
+_NEAR, _BELOW = 120, {"negative", "nonpositive"}
 
 
 KERNEL = _Certified(Environment())

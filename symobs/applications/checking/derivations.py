@@ -117,7 +117,11 @@ class LineAuditor(EquationAuditor):
         for left, right in pairwise(members):  # what is not evaluated is not false
             with suppress(Misfit):
                 common(self._value(left, reading), self._value(right, reading))
-        return all(self.true(left, right) for left, right in pairwise(members))
+        wrong = [pair for pair in pairwise(members) if not self.true(*pair)]
+        for pair in wrong:
+            with suppress(Misfit):
+                self.require_told_apart(*common(*(self._value(side, reading) for side in pair)))
+        return not wrong
 
     def defined(self, entry: PrintedEntry) -> tuple[str, Scalar | Matrix] | None:
         """Return the letter that a line defines, and its value; None for any other line."""

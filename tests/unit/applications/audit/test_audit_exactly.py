@@ -71,6 +71,27 @@ def test_the_root_of_a_square_has_a_square() -> None:
     assert findings("sqrt(c^2)^2 = c^2", "sqrt(c^4) = c^2", "sqrt(c^2) = sqrt(c^2)", **CHAIN) == []
 
 
+@pytest.mark.parametrize(
+    ("relation", "wrong"),
+    [
+        ("sqrt(k/m) = sqrt(k)/sqrt(m)", 0),
+        ("sqrt(6 m) = sqrt(2) sqrt(3 m)", 0),
+        ("sqrt(m/2) = sqrt(2 m)/2", 0),
+        ("sqrt(k/m) = sqrt(k) sqrt(m)", 1),
+        ("sqrt(k m) = sqrt(k) + sqrt(m)", 1),
+        ("sqrt(3 + 2 sqrt(2)) = 1 + sqrt(3)", 1),
+    ],
+)
+def test_a_root_of_a_product_is_the_product_of_the_roots(relation: str, wrong: int) -> None:
+    assert len(findings(relation, **CHAIN | {"symbols": {"c": "real", "k": "positive", "m": "positive"}})) == wrong
+
+
+@pytest.mark.parametrize("relation", ["sqrt(3 + 2 sqrt(2)) = 1 + sqrt(2)", "sqrt(exp(2 c)) = exp(c)"])
+def test_roots_that_only_seem_to_differ_are_not_said_to(relation: str) -> None:
+    with pytest.raises(ProblemErrors, match="is not decided"):
+        findings(relation, **CHAIN)
+
+
 @tabled
 def test_a_condition_says_nothing_where_its_factor_may_vanish(relation: str) -> None:
     """At a = 0 and c = −1 each condition holds, and the equation does not."""
