@@ -282,13 +282,11 @@ def cannot_be_told_apart(left: Printed, right: Printed, signs: Mapping[str, str]
         for k, name in enumerate(names)
     }
     try:
-        apart = [
-            near(entry, _NEAR)
-            for entry in as_matrix(substitute(values[0], point) - substitute(values[1], point)).entries
-        ]
+        one, other = (as_matrix(substitute(value, point)) for value in values)
+        apart = [near(entry, _NEAR) for entry in (one - other).entries]
     except (ArithmeticError, ValueError):
-        return True
-    return all(entry is None or abs(entry) < Fraction(1, 2 ** (_NEAR - 1)) for entry in apart)
+        return False
+    return all(entry is not None and abs(entry) < Fraction(1, 2 ** (_NEAR - 1)) for entry in apart)
 
 
 #: Values that agree to so many bits are not said to be different; signs of what is drawn from below 0.
