@@ -222,6 +222,8 @@ def _root(part: SyntaxNode, radicand: Scalar, reading: Reading) -> Scalar:
         root = square_root(radicand)
     except ZeroDivisionError:
         raise Misfit(f"sqrt({part}) is not real") from None
+    if reading.where.sign(odd) == "negative":
+        raise Misfit(f"sqrt({part}) is not real")
     reading.real_where(odd, f"sqrt({part})")
     for factor, power in factors:
         if power // 2 % 2:  # it stands before the root with an odd power
@@ -255,7 +257,8 @@ class _Certified(Exact):
 
 def _products_of_roots(values: Sequence[Scalar | Matrix]) -> Iterator[Scalar]:
     """Yield what vanishes because √u √v is √(u v) where they are real."""
-    roots = list(dict.fromkeys(root for value in values for root in roots_in(value)))[:_MOST_ROOTS]
+    found = dict.fromkeys(root for value in values for root in roots_in(value))
+    roots = [root for root in found if not functions_in([root.argument])][:_MOST_ROOTS]  # whose signs are looked at
     parts = {(f,): f.argument for f in roots} | {(f, g): f.argument * g.argument for f, g in combinations(roots, 2)}
     for h, (names, argument) in product(roots, parts.items()):
         ratio = h.argument / argument

@@ -86,6 +86,12 @@ def test_a_root_of_a_product_is_the_product_of_the_roots(relation: str, wrong: i
     assert len(findings(relation, **CHAIN | {"symbols": {"c": "real", "k": "positive", "m": "positive"}})) == wrong
 
 
+@pytest.mark.parametrize("relation", ["sqrt(-k) sqrt(-m) = sqrt(k m)", "sqrt(-k)^2 = -k"])
+def test_a_root_of_what_is_negative_has_no_value(relation: str) -> None:
+    found = finding(relation, **CHAIN | {"symbols": {"c": "real", "k": "positive", "m": "positive"}})
+    assert (found.holds, found.reason) == ("", "sqrt(-k) is not real")
+
+
 @pytest.mark.parametrize("relation", ["sqrt(3 + 2 sqrt(2)) = 1 + sqrt(2)", "sqrt(exp(2 c)) = exp(c)"])
 def test_roots_that_only_seem_to_differ_are_not_said_to(relation: str) -> None:
     with pytest.raises(ProblemErrors, match="is not decided"):
