@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 from math import hypot
+from operator import itemgetter
 from typing import TYPE_CHECKING, TypeAlias, TypeVar
 
 from symobs.ground.dataclass import dataclass
@@ -250,11 +251,12 @@ def _best(content: Content, lines: Lines, around: Surroundings, measure: Measure
     pieces = [piece for line in around.lines for piece in _pieces(line)]
     room = around.frame.grown(-_CLEAR)
     best, worth = None, float("-inf")
-    for (x, y), from_middle in _trials(lines, width, height):
-        highest = _FAR + _FAR / 3 - _MIDDLE * from_middle + _FREE + _UNSHADED
+    for (x, y), from_middle in sorted(_trials(lines, width, height), key=itemgetter(1)):
+        if _FAR + _FAR / 3 - _MIDDLE * from_middle + _FREE + _UNSHADED <= worth:
+            break  # no farther one is worth more
         left, bottom = x - width / 2, y - height / 2
         right, top = left + width, bottom + height
-        if highest <= worth or left < room.left or right > room.right or bottom < room.bottom or top > room.top:
+        if left < room.left or right > room.right or bottom < room.bottom or top > room.top:
             continue
         box = Rectangle(left, bottom, right, top)
         if any(box.meets(other) for other in taken) or (best is None and _is_crossed(box.grown(_CLEAR), pieces)):
