@@ -99,10 +99,10 @@ def _initialiser(cls: Any, parts: dict[str, Any], names: tuple[str, ...]) -> Cal
 
     def initialise(self: Any, *values: Any, **named: Any) -> None:
         if next(calls) == _OFTEN:
-            type.__setattr__(cls, "__init__", _compiled(parts, names, finish))
+            type.__setattr__(cls, "__init__", _compiled(parts, finish))
         own = self.__dict__  # a frozen class refuses to be written to in any other way
         own.update(defaults)
-        own.update(zip(names, values))  # how many there are is looked at below
+        own.update(zip(names, values, strict=False))  # how many there are is looked at below
         own.update(named)
         for name, make in made:
             if name not in own:
@@ -117,22 +117,23 @@ def _initialiser(cls: Any, parts: dict[str, Any], names: tuple[str, ...]) -> Cal
     return initialise
 
 
-def _compiled(parts: dict[str, Any], names: tuple[str, ...], finish: Callable[[Any], None] | None) -> Callable[..., None]:
+def _compiled(parts: dict[str, Any], finish: Callable[[Any], None] | None) -> Callable[..., None]:
     """Return `__init__` as the standard library would write it."""
-    known: dict[str, Any] = {"finish": finish, "MISSING": _MISSING}
-    by_place, by_name, lines = [], [], ["own = self.__dict__"]
+    known: dict[str, Any] = {"__finish": finish, "__missing": _MISSING}  # names that no part has
+    by_place: list[str] = []
+    by_name: list[str] = []
+    lines = ["__parts = self.__dict__"]
     for name, part in parts.items():
         is_made = part.default_factory is not _MISSING
-        known |= {f"default_{name}": _MISSING if is_made else part.default, f"make_{name}": part.default_factory}
+        known |= {f"__default_{name}": _MISSING if is_made else part.default, f"__make_{name}": part.default_factory}
         has_default = is_made or part.default is not _MISSING
-        value = f"make_{name}()" if is_made else f"default_{name}"
+        value = f"__make_{name}()" if is_made else f"__default_{name}"
         if part.init:
-            written = f"{name}=default_{name}" if has_default else name
-            (by_name if part.kw_only else by_place).append(written)
-            value = f"{value} if {name} is MISSING else {name}" if is_made else name
+            (by_name if part.kw_only else by_place).append(f"{name}=__default_{name}" if has_default else name)
+            value = f"{value} if {name} is __missing else {name}" if is_made else name
         if part.init or has_default:
-            lines.append(f"own['{name}'] = {value}")
-    lines += ["finish(self)"] if finish is not None else []
+            lines.append(f"__parts['{name}'] = {value}")
+    lines += ["__finish(self)"] if finish is not None else []
     head = ", ".join(("self", *by_place, *(["*", *by_name] if by_name else [])))
     exec(f"def initialise({head}):\n  " + "\n  ".join(lines), known)  # noqa: S102 - of names of this program alone
     made: Callable[..., None] = known["initialise"]

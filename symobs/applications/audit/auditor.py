@@ -11,6 +11,8 @@ from symobs.applications.audit import differences
 from symobs.applications.audit.equations import (
     FUNCTIONS,
     INSTANTS,
+    NOT_NEGATIVE,
+    NOT_POSITIVE,
     EquationConditions,
     Gap,
     Reading,
@@ -39,6 +41,7 @@ from symobs.applications.audit.evaluation import (
 )
 from symobs.applications.audit.slips import CandidateLetters, SearchBudget, found_slip
 from symobs.exact import Matrix, Scalar
+from symobs.exact.core.polynomial import product_of
 from symobs.formula.convention import Convention, convention_named
 from symobs.formula.expression import declared_name
 from symobs.formula.expression.source import shown
@@ -202,8 +205,14 @@ def is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> 
 _MOST_LETTERS = 3
 
 
-#: The signs of so many factors under roots are tried both ways.
+#: The signs of so many factors under roots are tried both ways; signs that say whether one is not positive.
 _MOST_SQUARES = 3
+_SIGNED = NOT_NEGATIVE | NOT_POSITIVE
+
+
+def _is_odd(turned: Sequence[Scalar], chosen: Sequence[Scalar]) -> bool:
+    """Return whether an odd number of the chosen factors are negative, and so their product."""
+    return sum(factor in turned for factor in chosen) % 2 == 1
 
 
 @dataclass
@@ -318,10 +327,15 @@ class EquationAuditor:
         return reading
 
     def true(self, left: SyntaxNode, right: SyntaxNode) -> bool:
-        """Return whether an equation holds in general."""
+        """Return whether an equation holds in general, whatever the signs of squared radicands."""
         reading = self.reading(left, right)
-        reading.kept = self.kept.setdefault((id(reading.environment), self.where.text), {})
-        return self._true(left, right, reading)
+        if not any(part.text == "sqrt" for side in (left, right) for part in every(side)):  # whose signs are noted anew
+            reading.kept = self.kept.setdefault((id(reading.environment), self.where.text), {})
+        found = self._true(left, right, reading)
+        return all(
+            self._true(left, right, self.reading(left, right, turned)) if turned else found
+            for turned in self._choices(reading)
+        )
 
     def _true(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
         try:
@@ -337,10 +351,13 @@ class EquationAuditor:
         try:
             left, right = spectral(printed_left, printed_right, environment.variable)
             sides = [self._value(side, reading) for side in (left, right)]
+            if () not in (choices := self._choices(reading)):
+                reading = self.reading(printed_left, printed_right, choices[0])
+                sides = [self._value(side, reading) for side in (left, right)]
             pair = common(*sides)
         except Misfit as misfit:
             return Verdict(*self._misfit(printed_left, printed_right, str(misfit), environment))
-        turned = self._turned(printed_left, printed_right, reading)
+        turned = self._turned(printed_left, printed_right, reading, choices)
         if turned is not None:
             return turned
         if equal(*pair):
@@ -373,16 +390,36 @@ class EquationAuditor:
             self._under(f"{left} = {right}", *needed), f"true in general only: {'; '.join(reasons)}", "in general"
         )
 
-    def _turned(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
+    def _choices(self, reading: Reading) -> list[tuple[Scalar, ...]]:
+        """Return which squared radicands can be negative together; raises `BudgetExceeded` for many of them."""
+        if len(squares := reading.squares) > _MOST_SQUARES:
+            raise BudgetExceeded(f"the signs of more than {_MOST_SQUARES} factors under roots are open")
+        choices = [*chain.from_iterable(combinations(squares, count) for count in range(len(squares) + 1))]
+        products = {chosen: self.where.sign(product_of(chosen)) for chosen in choices if len(chosen) > 1}
+        known = {chosen: sign in NOT_POSITIVE for chosen, sign in products.items() if sign in _SIGNED}
+        found = [turned for turned in choices if all(_is_odd(turned, chosen) == odd for chosen, odd in known.items())]
+        return found or choices  # of conditions that contradict each other nothing is concluded
+
+    def _turned(
+        self, left: SyntaxNode, right: SyntaxNode, reading: Reading, choices: Sequence[tuple[Scalar, ...]]
+    ) -> Verdict | None:
         """Return the signs of squared radicands for which an equation holds, unless it holds for all or none."""
-        squares = reading.squares[:_MOST_SQUARES]
-        choices = list(chain.from_iterable(combinations(squares, count) for count in range(len(squares) + 1)))
         true = [turned for turned in choices if self._true(left, right, self.reading(left, right, turned))]
         if not true or len(true) == len(choices):
             return None
-        needed = [f"{text_of_value(factor)} {'<=' if factor in true[0] else '>='} 0" for factor in squares]
+        found, left_over = {}, choices
+        for count in range(1, len(reading.squares) + 1):
+            for chosen in combinations(reading.squares, count):
+                odd = _is_odd(true[0], chosen)
+                rest = [turned for turned in left_over if _is_odd(turned, chosen) == odd]
+                if len(rest) < len(left_over) and all(_is_odd(turned, chosen) == odd for turned in true):
+                    found[chosen], left_over = odd, rest
+        if len(left_over) > len(true):  # one choice of signs for which it is true
+            found = {(factor,): factor in true[0] for factor in reading.squares}
+        needed = [f"{text_of_value(product_of(chosen))} {'<=' if odd else '>='} 0" for chosen, odd in found.items()]
+        where = "in general only where" if len(left_over) == len(true) else "where"
         return Verdict(
-            self._under(f"{left} = {right}", *needed), f"a root is not negative: true only where {' and '.join(needed)}"
+            self._under(f"{left} = {right}", *needed), f"a root is not negative: true {where} {' and '.join(needed)}"
         )
 
     def _value(self, node: SyntaxNode, reading: Reading) -> Printed:
@@ -407,6 +444,9 @@ class EquationAuditor:
         except Misfit:  # it is another equation that uses this letter, or the letter is reported where it stands
             return environment
         self.gaps += [gap for gap in reading.gaps if gap not in self.gaps]
+        if reading.squares:
+            message = f"{name} contains the root of a square of {text_of_value(reading.squares[0])}, whose sign is open"
+            raise BudgetExceeded(message, repair="write its value in the equation, or declare the sign")
         if isinstance(found, Flexible):
             return environment
         if isinstance(found, Signal):

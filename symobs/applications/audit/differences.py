@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from symobs.applications.audit.equations import text_of_value
 from symobs.exact import Matrix, Scalar
+from symobs.exact.algebraic.enclosure import near
 from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to, written_out
 from symobs.ground.dataclass import dataclass
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
     from symobs.exact.algebraic.rounded_decimals import PrintedDecimal
 
+#: Numbers with roots are rounded from so many bits.
+_BITS = 400
 _MOST_LISTED = 4
 _MOST_EXCHANGED = 12
 
@@ -61,10 +64,9 @@ def wrong_entries(printed: Matrix, right: Matrix, *, whole: str = "the value") -
 
 def entry(place: str, printed: Scalar, right: Scalar) -> EntryDifference:
     """Return the message on a wrong value."""
-    decimal, plain = single(printed), written_out(printed)
-    if decimal is None or not right.is_constant:
+    decimal, plain, exact = single(printed), written_out(printed), near(right, _BITS)
+    if decimal is None or exact is None:
         return EntryDifference(place, text_of_value(plain), text_of_value(right), slip(plain, right))
-    exact = right.fraction()
     sign, size = "-" if decimal.units < 0 else "", -decimal if decimal.units < 0 else decimal
     because = decimal.slip(exact) or slip(plain, right)
     return EntryDifference(place, f"{sign}{size.rounded(size.units * size.unit)}", decimal.rounded(exact), because)
@@ -183,8 +185,8 @@ def value_text(value: Scalar | Matrix, printed: Scalar | Matrix | None = None) -
 
 
 def _number_text(value: Scalar, printed: Scalar | None) -> str:
-    decimal = single(printed) if printed is not None and value.is_constant else None
-    return text_of_value(value) if decimal is None else decimal.rounded(value.fraction())
+    decimal, exact = None if printed is None else single(printed), near(value, _BITS)
+    return text_of_value(value) if decimal is None or exact is None else decimal.rounded(exact)
 
 
 def term_text(value: Matrix, name: str) -> str:

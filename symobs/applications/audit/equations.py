@@ -46,7 +46,7 @@ _STRICT = {"positive", "negative", "nonzero"}
 _STRICT_OF = {"nonnegative": "positive", "nonpositive": "negative", "real": "nonzero"}
 
 
-_NOT_NEGATIVE, _NOT_POSITIVE = {"positive", "nonnegative", "zero"}, {"negative", "nonpositive"}
+NOT_NEGATIVE, NOT_POSITIVE = {"positive", "nonnegative", "zero"}, {"negative", "nonpositive"}
 
 
 @dataclass
@@ -158,15 +158,15 @@ class Reading:
 
     def real_where(self, value: Scalar, root: str) -> None:
         """Note that a root is real only where a value is not negative."""
-        if value.names <= self.environment.signs.keys() and self.where.sign(value) not in _NOT_NEGATIVE:
+        if value.names <= self.environment.signs.keys() and self.where.sign(value) not in NOT_NEGATIVE:
             self.gaps.append(Gap((value,), f"{root} is not real", below=True))
 
     def sign_of_square(self, factor: Scalar) -> int:
         """Return 1 or -1, the sign that is read for a factor."""
         sign = self.where.sign(factor)
-        if sign in _NOT_NEGATIVE:
+        if sign in NOT_NEGATIVE:
             return 1
-        if sign in _NOT_POSITIVE:
+        if sign in NOT_POSITIVE:
             return -1
         if factor not in self.squares:
             self.squares.append(factor)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -65,6 +67,35 @@ def test_the_root_of_a_square_is_not_negative(relation: str, where: str) -> None
     assert findings(found.right, **CHAIN) == []
     positive = {**CHAIN, "symbols": {"c": "positive"}}
     assert len(findings(relation, **positive)) == (relation not in {"sqrt(c^2) = c", "sqrt(4 c^2) = 2 c"})
+
+
+@pytest.mark.parametrize(
+    ("relation", "sides"),
+    [
+        ("sqrt(a^2*b^2) = a*b", "only where"),
+        ("sqrt(a^2)*sqrt(b^2) = -a*b", "only where"),
+        ("sqrt(a^2) + sqrt(b^2) = b - a", "only where"),
+        ("sqrt(a^2*b^2) + sqrt(b^2) = a*b - b", "only where"),
+        ("sqrt(a^2)*(b - sqrt(b^2)) = a*(b - sqrt(b^2))", "true where"),
+    ],
+)
+def test_signs_below_roots_are_those_for_which_a_line_is_true(relation: str, sides: str) -> None:
+    signs = {**CHAIN, "symbols": {"a": "real", "b": "real", "c": "real"}}
+    found = finding(relation, **signs)
+    conditions = found.right.partition(" where ")[2].split(", ")
+    assert sides in found.reason
+    for a, b in product((-2, 2), (-3, 3)):
+        known = {"sqrt": math.sqrt, "a": a, "b": b}
+        left, right = (eval(side.replace("^", "**"), known) for side in relation.split("="))  # noqa: S307 - our own
+        where = all(eval(condition, known) for condition in conditions)  # noqa: S307
+        assert (left == right) is where or (left == right and sides == "true where")
+    assert findings(found.right, **signs) == []
+
+
+def test_a_condition_on_a_product_says_which_signs_go_together() -> None:
+    signs = {**CHAIN, "symbols": {"a": "real", "b": "real", "c": "real"}}
+    assert findings("sqrt(a^2 b^2) = a b where a b >= 0", "sqrt(a^2 b^2) = -a b where a b <= 0", **signs) == []
+    assert finding("sqrt(a^2 b^2) = a b where a b <= 0", **signs).right == "sqrt(a^2 b^2) = -a*b"
 
 
 def test_the_root_of_a_square_has_a_square() -> None:

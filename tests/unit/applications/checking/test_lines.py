@@ -60,6 +60,12 @@ def test_the_first_false_line_is_named(line: str, place: int) -> None:
     assert [each.verdict for each in report.lines] == ["true"] * (place - 1) + ["false", "true"]
 
 
+def test_a_root_of_a_square_is_not_what_is_squared() -> None:
+    checked = Checked.of(SERVO.replace("[plant]", '[symbols]\nb = "real"\n[plant]'))
+    assert lines("sqrt(b^2) = b", checked=checked) == [("false", ())]
+    assert lines("sqrt(b^2) = b where b >= 0", checked=checked) == [("true", ())]
+
+
 @tabled
 def test_lines_in_the_letters_of_a_convention(convention: str, right: str, wrong: str) -> None:
     observer = SERVO.replace('task = "compensator"', 'task = "observer"').replace('control_poles = "-2, -2"\n', "")
