@@ -84,15 +84,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"{oracle.COMMAND} is not on PATH", file=sys.stderr)
     counted: Counter[str] = Counter()
 
+    @settings(max_examples=min(BATCH, options.problems), deadline=None, suppress_health_check=list(HealthCheck))
     @given(problems(options.task))
     def test(problem: Tables) -> None:
         examine(problem, oracles, counted, options.seconds)
 
-    relaxed = settings(
-        max_examples=min(BATCH, options.problems), deadline=None, suppress_health_check=list(HealthCheck)
-    )
     for number in range(-(-options.problems // BATCH)):
-        seed(options.seed + number)(relaxed(test))()
+        seed(options.seed + number)(test)()
         print(dict(counted), file=sys.stderr, flush=True)
     for what in sorted(counted):
         print(f"{counted[what]:8} {what}")

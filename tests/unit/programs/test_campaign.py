@@ -139,6 +139,7 @@ def test_a_bug_of_ours_is_found_and_made_small(
         return {**found, "rank": found["rank"] - 1} if isinstance(found, dict) and found["rank"] > 1 else found
 
     asked = ["--problems", "10", "--task", "observability", "--oracle", "PARI"]
+    monkeypatch.setattr(campaign, "BATCH", 5)
     assert campaign.main(asked) == 0
     monkeypatch.setattr(campaign, "solved", lying)
     with pytest.raises(AssertionError, match="PARI: rank") as told:
