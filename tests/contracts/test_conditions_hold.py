@@ -95,7 +95,7 @@ BUILT = {
     """,
 }
 
-#: Fractions know no roots: examples with roots in their data are held to PARI, or by the second reader of examples.
+#: Fractions know no roots: the lines of examples with roots in their data are held with 60 digits, and their answers to PARI.
 WITH_ROOTS = {
     "coupled_masses_irrational",
     "inverted_pendulum_integral_action",

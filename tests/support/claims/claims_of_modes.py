@@ -62,9 +62,10 @@ def dual_holds(result: Any, at: Setting) -> None:
     assert matrix_at(result.fields["B"], at.point) == transposed(at.C)
     assert matrix_at(result.fields["C"], at.point) == transposed(at.B)
     assert matrix_at(result.fields["D"], at.point) == transposed(at.D)
-    A, B = (matrix_at(result.fields[key], at.point) for key in "AB")
-    ranks = rank_of(observability_rows(at.A, at.C)), rank_of(observability_rows(transposed(A), transposed(B)))
-    assert ranks == (result.fields["observability_rank"], result.fields["dual_controllability_rank"])
+    A, B, C = (matrix_at(result.fields[key], at.point) for key in "ABC")
+    pairs = (at.A, at.C), (transposed(at.A), transposed(at.B)), (A, C), (transposed(A), transposed(B))
+    kinds = "observability", "controllability", "dual_observability", "dual_controllability"
+    assert [rank_of(observability_rows(*pair)) for pair in pairs] == [result.fields[f"{kind}_rank"] for kind in kinds]
 
 
 def coordinates_hold(result: Any, at: Setting) -> None:
