@@ -20,6 +20,7 @@ from tests.support.examples import example_of
 from tests.support.paths import COMPILED, ROOT
 from tests.support.problems.steps import OWN_PHRASES
 from tests.support.sampling import FULL
+from tests.support.tools.browser import launched
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator
@@ -63,6 +64,14 @@ def require_tool(name: str) -> str:
 def require_tool_fixture() -> Callable[[str], str]:
     """Offer `require_tool` to tests without an import."""
     return require_tool
+
+
+@pytest.fixture(scope="module")
+def chromium(require_tool: Callable[[str], str]) -> Iterator[Any]:
+    """Return a headless Chromium that is driven by playwright."""
+    pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install symobs[browser-test]")
+    with launched(require_tool("chromium")) as browser:
+        yield browser
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ All of it: `python -m tests.support.tampering.injection`.
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -18,7 +18,7 @@ from symobs.system import Symbols
 from tests.kit import tabled
 from tests.support.tampering import injection
 from tests.support.tampering.injection import SECRET, TEXTS, corpus, printable, problem
-from tests.support.tools.browser import Browser
+from tests.support.tools.browser import Watched
 from tests.support.tools.command_line import inside
 
 if TYPE_CHECKING:
@@ -49,9 +49,8 @@ def test_a_pdf_shows_hostile_texts_and_does_nothing(require_tool: RequireTool, t
     assert list(injection.faults_of_pdf(part(tmp_path, 83), tmp_path)) == []
 
 
-def test_a_web_page_shows_hostile_texts_and_does_nothing(require_tool: RequireTool, tmp_path: Path) -> None:
-    with Browser(require_tool("chromium")) as browser:
-        assert list(injection.faults_of_web(part(tmp_path, 83), tmp_path, browser)) == []
+def test_a_web_page_shows_hostile_texts_and_does_nothing(chromium: Any, tmp_path: Path) -> None:
+    assert list(injection.faults_of_web(part(tmp_path, 83), tmp_path, Watched(chromium))) == []
 
 
 def test_markdown_shows_hostile_texts_and_means_nothing(tmp_path: Path) -> None:

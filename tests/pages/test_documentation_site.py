@@ -15,10 +15,10 @@ import pytest
 from symobs.cli.command_line import COMMANDS
 from symobs.tasks.result import tasks
 from tests.support.paths import ROOT
+from tests.support.tools.browser import Watched
 from tests.support.tools.command_line import SAFETY, environment
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
 pytestmark = pytest.mark.slow  # the extra `docs` is not among those of the quick tests
@@ -87,24 +87,19 @@ def test_links_within_the_site_lead_somewhere(site: Path) -> None:
                 assert (path.parent / link).exists(), f"{path.name}: {link}"
 
 
-def test_no_page_asks_anybody_for_anything(site: Path, require_tool: Callable[[str], str]) -> None:
-    path = require_tool("chromium")
-    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install symobs[browser-test]")
+def test_no_page_asks_anybody_for_anything(site: Path, chromium: Any) -> None:
     pages = ["index", "guide", "reference/tasks", "reference/python", "gallery/stability_region"]
     pages += ["gallery/examples/servo_observer"]
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=path, args=["--headless", "--no-sandbox", "--disable-gpu"])
-        opened = browser.new_page(viewport={"width": 390, "height": 800})
-        asked: list[str] = []
-        opened.on("request", lambda request: asked.append(request.url))
-        for name in pages:
-            opened.goto((site / f"{name}.html").as_uri())
-            assert opened.evaluate("document.documentElement.scrollWidth") <= 390, name
-        opened.goto(f"{(site / 'search.html').as_uri()}?q=bridge")
-        opened.wait_for_selector("#search-results li a", timeout=60_000)
-        assert "bridge_circuit" in str(opened.eval_on_selector_all("#search-results a", "all => all.map(a => a.href)"))
-        browser.close()
-    assert [url for url in asked if not url.startswith(("file:", "data:"))] == []
+    opened = Watched(chromium)
+    opened.show(390)
+    for name in pages:
+        opened.page.goto((site / f"{name}.html").as_uri())
+        assert opened.page.evaluate("document.documentElement.scrollWidth") <= 390, name
+    opened.page.goto(f"{(site / 'search.html').as_uri()}?q=bridge")
+    opened.page.wait_for_selector("#search-results li a", timeout=60_000)
+    found = opened.page.eval_on_selector_all("#search-results a", "all => all.map(a => a.href)")
+    assert "bridge_circuit" in str(found)
+    assert [url for url in opened.requests if not url.startswith(("file:", "data:"))] == []
 
 
 def test_an_example_that_is_not_what_it_expects_ends_the_build(monkeypatch: pytest.MonkeyPatch) -> None:

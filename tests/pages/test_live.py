@@ -33,17 +33,6 @@ ENGLISH_WORDS = re.compile(
     r"\b(the|is|are|and|with|this|poles|answers?|derivation|observer|row|save|copy)\b", re.IGNORECASE
 )
 PATIENCE = 60_000  # milliseconds; ends a page that hangs, measures nothing
-_FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
-
-
-@pytest.fixture(name="chromium", scope="module")
-def launched(require_tool: Callable[[str], str]) -> Iterator[Any]:
-    path = require_tool("chromium")
-    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install symobs[browser-test]")
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=path, args=_FLAGS)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture(name="server", scope="module")

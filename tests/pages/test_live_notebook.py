@@ -135,9 +135,7 @@ def test_what_is_wrong_is_said_at_once(
     assert reason in str(refused.value)
 
 
-def test_two_widgets_in_shadow_roots(require_tool: Callable[[str], str], widget: Callable[..., Any]) -> None:
-    path = require_tool("chromium")
-    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install symobs[browser-test]")
+def test_two_widgets_in_shadow_roots(chromium: Any, widget: Callable[..., Any]) -> None:
     live = {"one": widget(SERVO), "two": widget(servo("-4, -5"))}
 
     def kernel(name: str, content: str) -> str:
@@ -145,47 +143,45 @@ def test_two_widgets_in_shadow_roots(require_tool: Callable[[str], str], widget:
         told, live[name].sent = live[name].sent, []
         return json.dumps(told)
 
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=path, args=["--headless", "--no-sandbox", "--disable-gpu"])
-        page = browser.new_page(viewport={"width": 900, "height": 900})
-        page.set_default_timeout(60_000)
-        complaints: list[str] = []
-        page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.expose_function("kernel", kernel)
-        page.expose_function("kept", lambda name, state: setattr(live[name], "state", state))
-        given = {"module": live["one"]._esm, "css": live["one"]._css, "states": {n: w.state for n, w in live.items()}}
-        page.add_init_script("".join(f"window.{name} = {json.dumps(value)};" for name, value in given.items()))
-        page.route("http://notebook.test/", lambda route: route.fulfill(body=PAGE, content_type="text/html"))
-        page.goto("http://notebook.test/")
-        assert (
-            page.get_attribute('#one .card[data-name="K"] [data-latex]', "data-latex")
-            == r"K=\begin{bmatrix}4&3\end{bmatrix}"
-        )
-        gain = '#two .card[data-name="L"] [data-latex]'
-        assert page.get_attribute(gain, "data-latex") == r"L=\begin{bmatrix}8\\12\end{bmatrix}"
-        page.fill('#two [data-set="poles"]', "-2, -3")
-        page.press('#two [data-set="poles"]', "Tab")
-        page.wait_for_selector('#two .card[data-name="L"] [data-latex*="4"]')  # 5 − 1, 6 − 4
-        assert [str(entry) for entry in live["two"].result.L] == ["4", "2"]
-        assert "poles=-2,%20-3" in live["two"].state
-        assert "control=-2,%20-2" in live["one"].state
+    page = chromium.new_page(viewport={"width": 900, "height": 900})
+    page.set_default_timeout(60_000)
+    complaints: list[str] = []
+    page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
+    page.on("pageerror", lambda error: complaints.append(str(error)))
+    page.expose_function("kernel", kernel)
+    page.expose_function("kept", lambda name, state: setattr(live[name], "state", state))
+    given = {"module": live["one"]._esm, "css": live["one"]._css, "states": {n: w.state for n, w in live.items()}}
+    page.add_init_script("".join(f"window.{name} = {json.dumps(value)};" for name, value in given.items()))
+    page.route("http://notebook.test/", lambda route: route.fulfill(body=PAGE, content_type="text/html"))
+    page.goto("http://notebook.test/")
+    assert (
+        page.get_attribute('#one .card[data-name="K"] [data-latex]', "data-latex")
+        == r"K=\begin{bmatrix}4&3\end{bmatrix}"
+    )
+    gain = '#two .card[data-name="L"] [data-latex]'
+    assert page.get_attribute(gain, "data-latex") == r"L=\begin{bmatrix}8\\12\end{bmatrix}"
+    page.fill('#two [data-set="poles"]', "-2, -3")
+    page.press('#two [data-set="poles"]', "Tab")
+    page.wait_for_selector('#two .card[data-name="L"] [data-latex*="4"]')  # 5 − 1, 6 − 4
+    assert [str(entry) for entry in live["two"].result.L] == ["4", "2"]
+    assert "poles=-2,%20-3" in live["two"].state
+    assert "control=-2,%20-2" in live["one"].state
+    page.evaluate(
+        """() => {
+            const model = window.models.one;
+            model.values.state = model.values.state.replace("control=-2,%20-2", "control=-3,%20-3");
+            model.fire("change:state");
+        }"""
+    )
+    page.wait_for_selector('#one .card[data-name="K"] [data-latex*="9&5"]')  # (s + 3)²: 9, 6 − 1
+    assert (
         page.evaluate(
-            """() => {
-                const model = window.models.one;
-                model.values.state = model.values.state.replace("control=-2,%20-2", "control=-3,%20-3");
-                model.fire("change:state");
-            }"""
+            "getComputedStyle(document.getElementById('two').shadowRoot.querySelector('.panel')).borderRadius"
         )
-        page.wait_for_selector('#one .card[data-name="K"] [data-latex*="9&5"]')  # (s + 3)²: 9, 6 − 1
-        assert (
-            page.evaluate(
-                "getComputedStyle(document.getElementById('two').shadowRoot.querySelector('.panel')).borderRadius"
-            )
-            == "10px"
-        )
-        assert page.evaluate("document.documentElement.scrollWidth") <= 900
-        page.evaluate("() => { for (const m of Object.values(window.models)) m.end(); }")
-        assert page.locator(".symobs-live").count() == 0
-        browser.close()
+        == "10px"
+    )
+    assert page.evaluate("document.documentElement.scrollWidth") <= 900
+    page.evaluate("() => { for (const m of Object.values(window.models)) m.end(); }")
+    assert page.locator(".symobs-live").count() == 0
+    page.close()
     assert complaints == []

@@ -19,7 +19,7 @@ from symobs.applications.live.site import build
 from tests.programs.live_site import Files
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
     from pathlib import Path
 
 pytestmark = pytest.mark.slow
@@ -78,18 +78,15 @@ def _written(folder: Path) -> None:
 
 
 @pytest.fixture(name="page")
-def opened_page(require_tool: Callable[[str], str], site: ThreadingHTTPServer) -> Iterator[Any]:
-    path = require_tool("chromium")
-    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install symobs[browser-test]")
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=path, args=["--headless", "--no-sandbox", "--disable-gpu"])
-        page = browser.new_context().new_page()
-        page.set_default_timeout(PATIENCE)
-        page.clock.install()
-        page.goto(f"http://127.0.0.1:{site.server_address[1]}/#{SERVO}")
-        page.wait_for_selector(".card math")
-        yield page
-        browser.close()
+def opened_page(chromium: Any, site: ThreadingHTTPServer) -> Iterator[Any]:
+    context = chromium.new_context()
+    page = context.new_page()
+    page.set_default_timeout(PATIENCE)
+    page.clock.install()
+    page.goto(f"http://127.0.0.1:{site.server_address[1]}/#{SERVO}")
+    page.wait_for_selector(".card math")
+    yield page
+    context.close()
 
 
 def answered_by(page: Any, poles: str) -> str:

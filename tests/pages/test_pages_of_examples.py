@@ -25,13 +25,13 @@ from tests.pages.test_worked_examples import solved
 from tests.support.examples import EXAMPLES as FILES
 from tests.support.examples import document_of
 from tests.support.sampling import every as sampled
-from tests.support.tools.browser import Browser
+from tests.support.tools.browser import Watched
 from tests.unit.pages.test_html import faults, local, parsed
 from tests.unit.pages.test_markdown import formulas
 from tests.unit.pages.test_printers import hostile_members
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
     from symobs.pages.page.blocks import Block
     from symobs.tasks.result import Document
@@ -190,33 +190,31 @@ MEASURED = """(() => {
 })()"""
 
 
-def test_every_example_shows_in_a_browser(require_tool: Callable[[str], str], tmp_path: Path) -> None:
-    with Browser(require_tool("chromium")) as browser:
-        for name in [path.stem for path in sampled(3, FILES)]:
-            path = tmp_path / f"{name}.html"
-            path.write_text(str(render(document_of(name), "html")), "utf-8")
-            browser.media()
-            browser.size(WIDE)
-            browser.open(path)
-            assert browser.complaints() == [], name
-            assert browser.requests() == [path.as_uri()], name
-            wide: dict[str, Any] = browser.value(MEASURED)
-            assert wide["beyond"] == 0, name
-            assert [wide[fault] for fault in ("unseen", "low", "merged", "ragged", "hidden")] == [[]] * 5, name
-            browser.size(NARROW)
-            assert browser.value(MEASURED)["beyond"] == 0, name
-            browser.media("print")
-            browser.size(PAPER)
-            paper: dict[str, Any] = browser.value(MEASURED)
-            assert (paper["beyond"], paper["cut"]) == (0, []), name
-        browser.media()
-        light: str = browser.value(MEASURED)["colours"]
-        browser.media(dark=True)
-        dark: str = browser.value(MEASURED)["colours"]
-        assert light != dark
+def test_every_example_shows_in_a_browser(chromium: Any, tmp_path: Path) -> None:
+    browser = Watched(chromium)
+    for name in [path.stem for path in sampled(3, FILES)]:
+        path = tmp_path / f"{name}.html"
+        path.write_text(str(render(document_of(name), "html")), "utf-8")
+        browser.show(WIDE)
+        browser.open(path)
+        assert browser.complaints == [], name
+        assert browser.requests == [path.as_uri()], name
+        wide: dict[str, Any] = browser.page.evaluate(MEASURED)
+        assert wide["beyond"] == 0, name
+        assert [wide[fault] for fault in ("unseen", "low", "merged", "ragged", "hidden")] == [[]] * 5, name
+        browser.show(NARROW)
+        assert browser.page.evaluate(MEASURED)["beyond"] == 0, name
+        browser.show(PAPER, "print")
+        paper: dict[str, Any] = browser.page.evaluate(MEASURED)
+        assert (paper["beyond"], paper["cut"]) == (0, []), name
+    browser.show(WIDE)
+    light: str = browser.page.evaluate(MEASURED)["colours"]
+    browser.show(WIDE, scheme="dark")
+    dark: str = browser.page.evaluate(MEASURED)["colours"]
+    assert light != dark
 
 
-def test_no_formula_is_wider_than_its_page(require_tool: Callable[[str], str], tmp_path: Path) -> None:
+def test_no_formula_is_wider_than_its_page(chromium: Any, tmp_path: Path) -> None:
     """Polynomials of hundreds of terms, numbers of hundreds of digits, wide matrices: displayed, and in running text."""
     printer, source = MathmlPrinter(), random.Random(4)  # noqa: S311
     shown = [
@@ -228,19 +226,17 @@ def test_no_formula_is_wider_than_its_page(require_tool: Callable[[str], str], t
     ]
     path = tmp_path / "hostile.html"
     path.write_text(page("Hostile", "\n".join(shown)), "utf-8")
-    with Browser(require_tool("chromium")) as browser:
-        browser.open(path)
-        for width, media in ((WIDE, ""), (PAPER, "print")):
-            browser.media(media)
-            browser.size(width)
-            measured = browser.value(MEASURED)
-            assert (measured["beyond"], measured["cut"], measured["unseen"]) == (0, [], [])
-        browser.media()
-        browser.size(NARROW)
-        assert browser.value(MEASURED)["beyond"] == 0
+    browser = Watched(chromium)
+    browser.open(path)
+    for width, media in ((WIDE, "screen"), (PAPER, "print")):
+        browser.show(width, media)
+        measured = browser.page.evaluate(MEASURED)
+        assert (measured["beyond"], measured["cut"], measured["unseen"]) == (0, [], [])
+    browser.show(NARROW)
+    assert browser.page.evaluate(MEASURED)["beyond"] == 0
 
 
-def test_the_browser_would_say_what_is_wrong(require_tool: Callable[[str], str], tmp_path: Path) -> None:
+def test_the_browser_would_say_what_is_wrong(chromium: Any, tmp_path: Path) -> None:
     path = tmp_path / "wrong.html"
     path.write_text(
         "<!DOCTYPE html><meta charset='utf-8'><p style='width:2000px'>wide</p><math></math>"
@@ -248,11 +244,11 @@ def test_the_browser_would_say_what_is_wrong(require_tool: Callable[[str], str],
         "<mo>]</mo></mrow></math><img src='http://127.0.0.1:9/x.png'><script>console.log('x')</script>",
         encoding="utf-8",
     )
-    with Browser(require_tool("chromium")) as browser:
-        browser.size(WIDE)
-        browser.open(path)
-        assert len(browser.complaints()) == 2
-        assert browser.requests() == [path.as_uri(), "http://127.0.0.1:9/x.png"]
-        measured = browser.value(MEASURED)
-        assert measured["beyond"] > 0
-        assert (measured["unseen"], measured["low"]) == ([""], ["12"])
+    browser = Watched(chromium)
+    browser.show(WIDE)
+    browser.open(path)
+    assert len(browser.complaints) == 2
+    assert browser.requests == [path.as_uri(), "http://127.0.0.1:9/x.png"]
+    measured = browser.page.evaluate(MEASURED)
+    assert measured["beyond"] > 0
+    assert (measured["unseen"], measured["low"]) == ([""], ["12"])

@@ -17,11 +17,10 @@ from symobs.pages.page.detail_level import DETAILS
 from tests.support.tools.command_line import EXAMPLES, SERVO, inside
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
     from pathlib import Path
 
 LIVE = "https://example.org/live/"
-_FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
 
 
 def html(*options: str) -> str:
@@ -113,16 +112,6 @@ def test_a_sheet_folds_solutions_and_leaves_questions_alone() -> None:
 
 
 # -- in a browser -----------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture(name="chromium", scope="module")
-def launched(require_tool: Callable[[str], str]) -> Iterator[Any]:
-    path = require_tool("chromium")
-    playwright = pytest.importorskip("playwright.sync_api", reason="needs playwright: pip install symobs[browser-test]")
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=path, args=_FLAGS)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture(name="files", scope="module")

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live.child import respond
 from symobs.applications.live.site import POLICY
+from tests.support.tools.browser import launched
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -103,15 +104,10 @@ def served(folder: Path) -> Iterator[str]:
 
 def main(folder: Path, names: list[str]) -> int:
     """Print everything; 1 where an answer differs."""
-    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - only where it is
-
-    with sync_playwright() as driver, served(folder) as address:
-        flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking"]
-        browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=flags)
+    with launched(str(shutil.which("chromium"))) as browser, served(folder) as address:
         page = browser.new_page()
         page.goto(f"{address}THIRD-PARTY.txt")
         found = differences(page, names or sorted(path.stem for path in EXAMPLES.glob("*.toml")))
-        browser.close()
     return 1 if found else 0
 
 

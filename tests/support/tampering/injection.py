@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 from symobs.ground.errors import SymobsError
 from symobs.pages.formats.pdf import compiled
-from tests.support.tools.browser import Browser
+from tests.support.tools.browser import Watched, launched
 from tests.support.tools.command_line import inside
 
 if TYPE_CHECKING:
@@ -162,7 +162,7 @@ _WORDS = "document.body.innerText"
 _POLICY = re.compile(r'<meta http-equiv="Content-Security-Policy"[^>]*>')
 
 
-def faults_of_web(texts: Sequence[str], folder: Path, browser: Browser) -> Iterator[str]:
+def faults_of_web(texts: Sequence[str], folder: Path, browser: Watched) -> Iterator[str]:
     """Yield what is wrong about the page of the same sheet in a browser, with and without the page's own policy."""
     names = files(texts, folder)
     run = inside("sheet", *names, "--title", texts[0].replace("\0", ""), "-o", "out.html", folder=folder)
@@ -174,13 +174,13 @@ def faults_of_web(texts: Sequence[str], folder: Path, browser: Browser) -> Itera
             assert _POLICY.search(written)
             page.write_text(_POLICY.sub("", written), "utf-8")
         browser.open(page)
-        yield from (f"the browser complains: {complaint[:500]}" for complaint in browser.complaints())
-        yield from (f"{request} was asked for" for request in browser.requests() if request != page.as_uri())
-        if browser.value(_RAN):
+        yield from (f"the browser complains: {complaint[:500]}" for complaint in browser.complaints)
+        yield from (f"{request} was asked for" for request in browser.requests if request != page.as_uri())
+        if browser.page.evaluate(_RAN):
             yield "a script ran"
-        if browser.value(_ALIVE):
+        if browser.page.evaluate(_ALIVE):
             yield "an element came from a text"
-        yield from (f"not shown as it is: {text!r}" for text in lost(texts, str(browser.value(_WORDS))))
+        yield from (f"not shown as it is: {text!r}" for text in lost(texts, str(browser.page.evaluate(_WORDS))))
 
 
 #: A character that means something to Markdown; what `\` stands before is only shown.
@@ -217,8 +217,8 @@ def faults_of_bare_tex(texts: Iterable[str], folder: Path) -> Iterator[str]:
 def main() -> int:
     """Put the whole corpus on sheets of a hundred, as PDF, on the web and in Markdown; return 1 where something is wrong."""
     start, faults, count, pages = time.monotonic(), 0, 0, 0
-    with tempfile.TemporaryDirectory() as name, Browser(str(shutil.which("chromium"))) as browser:
-        folder = Path(name)
+    with tempfile.TemporaryDirectory() as name, launched(str(shutil.which("chromium"))) as chromium:
+        folder, browser = Path(name), Watched(chromium)
         texts = [text for text in corpus(folder) if printable(text)]
         for first in range(0, len(texts), 100):
             chunk = texts[first : first + 100]
