@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from tests.programs.campaign.claims import CROOT, Moments, claims
-from tests.programs.campaign.points import Uncovered, answer_at, points_for, texts_at
+from tests.programs.campaign.points import Uncovered, answer_at, general_point, points_for, texts_at
 from tests.programs.campaign.terms import Sheet, Unsupported
 from tests.support.algebra import Unreadable
 
@@ -241,13 +241,6 @@ class System:
 def in_general(answer: Tables) -> Tables:
     """Return the answer for parameters in general position."""
     return answer | ({"verdict": "yes"} if answer["verdict"] == "conditional" else {})
-
-
-def general_point(problem: Tables) -> dict[str, Fraction]:
-    """Return numbers that are in general position."""
-    primes = (101, 137, 173, 211, 251, 293, 331, 373)
-    signs = ((name, -1 if sign in {"negative", "nonpositive"} else 1) for name, sign in problem["symbols"].items())
-    return {name: Fraction(sign * prime, 7) for (name, sign), prime in zip(signs, primes, strict=False)}
 
 
 #: What is said beside a verdict with parameters in general position, without the points at which it is otherwise:

@@ -174,7 +174,7 @@ def test_the_case_that_holds_at_a_point_is_found() -> None:
     assert at(2, 3, 0) is None
     with pytest.raises(Uncovered):
         answer_at({**_ANSWER, "cases": []}, {"a": Fraction(2), "b": Fraction(2), "m": Fraction(1)})
-    points = list(points_for({"symbols": dict.fromkeys("abm", "real")}, _ANSWER))
+    points = points_for({"symbols": dict.fromkeys("abm", "real")}, _ANSWER)
     assert {point["a"] == point["b"] for point in points} == {True, False}
 
 
