@@ -312,38 +312,6 @@ def test_which_gains_survive_the_loss_of_observability(poles: list[int], survivo
 # -- what generic answers must not hide --------------------------------------------------------------------------------
 
 
-def test_a_gain_that_exists_at_one_point_is_found_there() -> None:
-    """The fixed mode is a: no gain in general, one at a = −2 and a = −3."""
-    plant = symobs.StateSpace("[a 0; 0 -1]", None, "[0 1]")
-    result = symobs.observer(plant, poles=[-2, -3])
-    assert result.verdict == "no"
-    for a, possible in ((Fraction(-2), True), (Fraction(-3), True), (Fraction(-1), False), (Fraction(4), False)):
-        at = Setting.of(plant, {"poles": [-2, -3]}, {"a": a})
-        assert assignable(at.A, at.C, at.wanted[""]) == possible
-        (found,) = applicable(result, at.point)
-        assert found.verdict == ("yes" if possible else "no")
-        HOLDS["observer"](found, at)
-
-
-def test_a_rank_below_n_says_where_it_drops_further() -> None:
-    plant = symobs.StateSpace("[-1 0 0; 0 -2 0; 0 0 -3]", None, "[0 1 c]")
-    result = symobs.observability(plant)
-    for c, expected in ((Fraction(0), 1), (Fraction(1), 2), (Fraction(-2, 3), 2)):
-        at = Setting.of(plant, {}, {"c": c})
-        (found,) = applicable(result, at.point)
-        assert found.fields["rank"] == rank_of(observability_rows(at.A, at.C)) == expected
-        HOLDS["observability"](found, at)
-
-
-def test_two_outputs_lose_the_rank_only_together() -> None:
-    plant = symobs.StateSpace("[0 1; 0 0]", None, "[a 0; b 0]")
-    result = symobs.observability(plant)
-    for a, b, expected in ((0, 0, 0), (0, 1, 2), (1, 0, 2), (1, 1, 2)):
-        at = Setting.of(plant, {}, {"a": Fraction(a), "b": Fraction(b)})
-        (found,) = applicable(result, at.point)
-        assert found.fields["rank"] == rank_of(observability_rows(at.A, at.C)) == expected
-
-
 @pytest.mark.parametrize("pole", ["-1/(c - 1)", "-1/(2*c - 1)"])
 def test_a_stratum_on_which_nothing_is_asked_for_is_no_case(pole: str) -> None:
     plant = symobs.StateSpace("[0 1; -2 -3]", None, "[1 c]")

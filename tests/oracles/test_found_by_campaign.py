@@ -24,28 +24,6 @@ def answered(text: str) -> dict[str, Any]:
     return found
 
 
-def test_a_case_says_what_it_does_not_have() -> None:
-    # A case is read over the fields around it: an error matrix that exists in general was taken to exist there too.
-    found = answered("""
-        task = "tracking"
-        [symbols]
-        a = "nonzero"
-        b = "nonnegative"
-        [plant]
-        A = "[1 a 0; -2 0 0; -3 0 -1]"
-        B = "[0; 2; -3]"
-        C = "[3 a*b 2]"
-        [specification]
-        control_poles = "-3, -2, -4"
-        observer_poles = "-2, -5"
-        reference_matrix = "[-1 -3 0; -2 -2 0; 2 2 -1]"
-    """)
-    (case,) = [case for case in found["cases"] if case["when"] == ["2*a + 1 == 0"]]
-    assert found["error_matrix"] is not None
-    assert case["error_matrix"] is None
-    assert case["polynomial"] is None
-
-
 def test_a_conditional_case_says_under_which_conditions() -> None:
     # The hidden mode −4/b of the stratum lies in the unit disc for some b only, and the case did not say for which.
     found = answered("""

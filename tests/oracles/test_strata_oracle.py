@@ -13,7 +13,8 @@ from symobs.exact import Ideal, Scalar
 from symobs.problem import validate
 from symobs.problem.file_tables import parse
 from tests.kit import tabled
-from tests.programs.strata_oracle.__main__ import Found, drawn, examine
+from tests.programs.campaign.solving import solved
+from tests.programs.strata_oracle.__main__ import Found, drawn, examine, judged
 from tests.programs.strata_oracle.answers import Branch, Contradiction, branches, hold, relations
 from tests.programs.strata_oracle.points import points_on
 
@@ -31,24 +32,18 @@ def told(result: Any) -> dict[str, Any]:
     return found
 
 
-def verdicts(result: Any, **point: int | Fraction) -> set[str]:
-    """Return what the branches say that cover a point."""
-    covering = branches(told(result), {name: Fraction(value) for name, value in point.items()})
-    return {branch.verdict for branch in covering or ()}
-
-
 # -- points that were contradicted ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("A", ["[0 b; a+b 0]", "[a b; a+b a]"])
-def test_where_all_is_at_rest_the_gramian_is_the_first_term_of_its_sum(A: str) -> None:
-    # At a = b = 0 A is 0, and W = Σ Aᵏ B Bᵀ (Aᵀ)ᵏ is B Bᵀ = [1; 0][1 0]; the curve of the case passes there.
-    plant = symobs.StateSpace(A, "[b+1; a]", dt=True)
-    found = told(symobs.gramian(plant, horizon="inf", of="controllability"))
-    covering = branches(found, {"a": Fraction(0), "b": Fraction(0)})
-    assert covering is not None
-    assert [branch.verdict for branch in covering] == ["yes"]
-    assert covering[0].fields["matrix"] == [["1", "0"], ["0", "0"]]
+@tabled
+def test_what_was_once_wrong_at_a_point_is_the_answer_of_the_plant_there(
+    problem: dict[str, Any], point: dict[str, str], verdict: str
+) -> None:
+    whole, at = {"symbols": {}, "specification": {}, **problem}, {name: Fraction(n) for name, n in point.items()}
+    answer = solved(whole, 600)
+    assert isinstance(answer, dict), answer
+    assert list(judged(whole, answer, at, 600)) == [("points", "")]
+    assert {branch.verdict for branch in branches(answer, at) or ()} == {verdict}
 
 
 def test_cases_are_polynomials_and_points_are_points() -> None:
@@ -71,58 +66,11 @@ def test_cases_are_polynomials_and_points_are_points() -> None:
         assert len(equations) < 6 or case["verdict"] == "undecided"
 
 
-def test_an_unstable_compensator_may_lose_its_pole() -> None:
-    # F = (b + 1)/(z + 2): K = 1 and L = b + 1 place b − 1 and −1.  At b = −1 there is no F, and no pole.
-    found = symobs.compensator(
-        symobs.StateSpace("[b]", "[1]", "[1]", dt=True), control_poles="b - 1", observer_poles="-1"
-    )
-    assert found.fields["F_stable"] == "no"
-    (case,) = found.case_tree
-    assert [str(condition) for condition in case.when] == ["b + 1 == 0"]
-    assert case.result is not None
-    assert case.result.fields["F_stable"] == "yes"
-
-
-def test_zeros_that_a_whole_stratum_has_are_found() -> None:
-    # P = [s − a², s − b³]/s² has the zero a² = b³ wherever these are the same and not 0, and no zero elsewhere.
-    found = symobs.transfer_function(symobs.StateSpace("[0 1; 0 0]", "[1 1; -a^2 -b^3]", "[1 0]"))
-    assert found.fields["zeros"] == ()
-    assert verdicts(found, a=8, b=4) == {"yes"}
-    (same,) = (case.result for case in found.cases if len(case.when) == 1)
-    assert [str(zero) for zero in same.zeros] == ["a**2"]
-    assert verdicts(found, a=8, b=5) == {"yes"}
-
-
 def test_no_case_of_the_advice_is_where_a_positive_radius_would_be_0() -> None:
     # The integrator is not moved, and no pole at distance r > 0 is at 0.
     plant = symobs.StateSpace("[0 1 0; b 0 0; 0 0 0]", "[0; 1; 0]", "[1 0 0]", symbols={"r": "positive", "b": "real"})
     found = symobs.pole_advice(plant, radius="r")
     assert not [case for case in found.case_tree if any("r" in c.expression.names for c in case.when)]
-
-
-def test_a_given_gain_is_told_where_modes_are_fixed() -> None:
-    # At a = 0 the input moves nothing, and s² + 2 s + 3 stays what it is.
-    found = symobs.state_feedback(symobs.StateSpace("[-1 a^2-1; 2 -1]", "[a; 0]"), K="[-2 -1]")
-    (case,) = found.case_tree
-    assert [str(condition) for condition in case.when] == ["a == 0"]
-    assert case.result is not None
-    assert [str(mode) for mode in case.result.fields["fixed_modes"]] == ["-1 + sqrt(2)*I", "-1 - sqrt(2)*I"]
-
-
-@tabled
-def test_a_double_root_is_one_wherever_the_discriminant_vanishes(A: str, signs: Any, point: Any) -> None:
-    # No sign of a discriminant that vanishes on the curve is left to be assumed there: the root is double, and exp(A t)
-    # is exp(r t) (I + (A − r I) t).
-    found = symobs.matrix_exponential(symobs.StateSpace(A, symbols=signs))
-    assert verdicts(found, **dict(zip("abc", point, strict=False))) == {"yes"}
-
-
-def test_exponents_over_several_denominators_depend_on_each_other() -> None:
-    # Where b = (a³ − a²)/(a² − a − 1), the rates of A are a, twice, and (a² − 1)/(a² − a − 1).
-    signs = {"a": "negative", "b": "nonzero"}
-    gramian = symobs.gramian(symobs.StateSpace("[0 a^2-1 0; a-b b+1 0; 1 0 a]", None, "[1 0 0]", symbols=signs))
-    relations = [[str(condition) for condition in case.when] for case in gramian.case_tree if case.result is not None]
-    assert ["a**3 - a**2*b - a**2 + a*b + b == 0", "a**2 - a - 1 != 0"] in relations
 
 
 # -- finitely many points ------------------------------------------------------------------------------------------------

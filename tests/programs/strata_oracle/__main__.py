@@ -156,14 +156,14 @@ def examine(
         problem, answer = meant(problem) | {"symbols": signs}, meant(answer) | {"symbols": signs}
     curves = [str(fraction(together(text))[0]) for text in relations(answer)] if functions else relations(answer)
     for point in points_on(curves, problem["symbols"], most):
-        for kind, said in _judged(problem, answer, point, seconds):
+        for kind, said in judged(problem, answer, point, seconds):
             found.counted[task, kind] += 1
             if said:
                 where = ", ".join(f"{name} = {number}" for name, number in sorted(point.items()))
                 found.wrong.append(f"seed {seed}, {task}, {kind} at {where}: {said}")
 
 
-def _judged(problem: Tables, answer: Tables, point: Point, seconds: float) -> Iterator[tuple[str, str]]:
+def judged(problem: Tables, answer: Tables, point: Point, seconds: float) -> Iterator[tuple[str, str]]:
     """Yield what becomes of a point, and the words for what is wrong."""
     at = {**texts_at({key: problem[key] for key in ("plant", "specification")}, point), "symbols": {}}
     at["plant"] |= {key: problem["plant"][key] for key in ("dt",) if key in problem["plant"]}
