@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -27,34 +26,6 @@ def plant_of(sample: Sample) -> Any:
 
 
 # -- identities ----------------------------------------------------------------------------------------------------------
-
-
-@given(numeric)
-@settings(max_examples=25)
-def test_the_parts_have_the_zeros_and_the_spectra_they_should(sample: Sample) -> None:
-    plant = plant_of(sample)
-    found: Any = symobs.decomposition(plant)
-    sizes = [found.sizes[name] for name in ("co", "c_no", "nc_o", "nc_no")]
-    kind = [k for k, size in enumerate(sizes) for _ in range(size)]
-    order = sample.order
-    allowed = {(0, 0), (0, 2), (1, 0), (1, 1), (1, 2), (1, 3), (2, 2), (3, 2), (3, 3)}
-    for i, j in product(range(order), repeat=2):
-        assert found.A[i, j] == 0 or (kind[i], kind[j]) in allowed
-    assert all(found.B[i, 0] == 0 for i in range(order) if kind[i] > 1)
-    assert all(found.C[0, j] == 0 for j in range(order) if kind[j] in {1, 3})
-    polynomials = []
-    for k in range(4):
-        there = [i for i in range(order) if kind[i] == k]
-        block = found.A.extract(there, there) if there else sympy.zeros(0, 0)
-        polynomials.append(block.charpoly(s).as_expr() if there else sympy.Integer(1))
-    hidden = symobs.pbh(plant).fixed_polynomial
-    unmoved = symobs.pbh(plant, of="controllability").fixed_polynomial
-    assert sympy.expand(polynomials[1] * polynomials[3] - hidden) == 0
-    assert sympy.expand(polynomials[2] * polynomials[3] - unmoved) == 0
-    assert sympy.expand(sympy.prod(polynomials) - plant.A.charpoly(s).as_expr()) == 0
-    expected = (plant.C * (s * sympy.eye(order) - plant.A).adjugate() * plant.B)[0] / plant.A.charpoly(s).as_expr()
-    assert sympy.cancel(found.transfer_function - expected) == 0
-    assert sympy.degree(sympy.fraction(sympy.cancel(expected))[1], s) == found.minimal_order
 
 
 @pytest.mark.parametrize("missing", ["input", "output"])

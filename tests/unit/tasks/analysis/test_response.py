@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import random
 from typing import Any
 
-import control  # type: ignore[import-untyped]
-import numpy as np
 import pytest
 import sympy
 
@@ -18,49 +15,6 @@ from symobs.proof.derivation.steps import Plot
 from tests.kit import text_of
 
 t, a, c = sympy.symbols("t a c")
-INPUTS: dict[str, Any] = {
-    "1": np.ones_like,
-    "t": lambda s: s,
-    "2*exp(-3*t) - t*cos(2*t)": lambda s: 2 * np.exp(-3 * s) - s * np.cos(2 * s),
-    "sin(t)^2": lambda s: np.sin(s) ** 2,
-}
-
-
-def heights(function: Any, times: Any) -> Any:
-    """The values of a SymPy expression in t."""
-    return [float(function.evalf(15, subs={t: time})) for time in times]
-
-
-@pytest.mark.parametrize("seed", [3, 4, *(pytest.param(k, marks=pytest.mark.slow) for k in range(5, 10))])
-def test_responses_of_designs_are_those_of_python_control(seed: int) -> None:
-    """Plant, error of the observer and loop with compensator, at random: exact functions beside simulated ones."""
-    chance = random.Random(seed)  # noqa: S311 - repeats
-    n = chance.choice([2, 3])
-    A = [[chance.randint(-3, 3) for _ in range(n)] for _ in range(n)]
-    B, C = [[chance.randint(-2, 2) or 1] for _ in range(n)], [[chance.randint(-2, 2) or 1 for _ in range(n)]]
-    plant = StateSpace(A, B, C)
-    poles = ["-1+2i", "-1-2i", "-2"][:n], ["-3", "-3", "-4"][-n:]
-    design = symobs.compensator(plant, control_poles=poles[0], observer_poles=poles[1])
-    if design.verdict != "yes":
-        pytest.skip("not controllable or not observable")
-    moved = StateSpace(plant.A - plant.B * design.K, B, C)
-    whole = StateSpace(design.closed_loop_matrix, C=sympy.Matrix([[*plant.C, *([0] * n)]]))
-    error = StateSpace(plant.A - design.L * plant.C, C=sympy.eye(n))
-    times = np.linspace(0, 4, 21)
-    signal = chance.choice([*INPUTS])
-    for system, u in ((moved, signal), (whole, None), (error, None)):
-        x0 = [chance.randint(-2, 2) for _ in range(system.order)]
-        found = symobs.response(system, initial=x0, input=u)
-        M = np.array(system.A.tolist(), float)
-        driven = np.array(system.B.tolist(), float) if u else np.zeros((system.order, 1))
-        by_control = control.ss(M, driven, np.eye(system.order), 0)
-        fine = np.linspace(0, 4, 8001)
-        values = INPUTS[u](fine) if u else np.zeros_like(fine)
-        wanted = control.forced_response(by_control, fine, values, np.array(x0, float)).outputs[:, ::400]
-        state = np.array([heights(entry, times) for entry in found.state])
-        assert np.allclose(state, wanted, rtol=1e-5, atol=1e-6 * (1 + np.abs(wanted).max()))
-        seen = np.array([heights(entry, times) for entry in sympy.Matrix([found.output])])
-        assert np.allclose(seen, np.array(system.C.tolist(), float) @ state)
 
 
 def pictures(result: Any) -> list[TimeResponse]:

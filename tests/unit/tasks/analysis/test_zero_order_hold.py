@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import random
 from typing import Any
 
-import control  # type: ignore[import-untyped]
-import numpy as np
 import pytest
 import sympy
 from sympy import exp
 
 import symobs
 from symobs import StateSpace
-from symobs.ground.errors import CertificateRejected, InputError
+from symobs.ground.errors import InputError
 from tests.kit import tabled
 
 T, a, omega = sympy.symbols("T a omega")
@@ -31,26 +28,6 @@ def test_sampled_plants_of_textbooks(A: str, B: str, A_d: Any, B_d: Any) -> None
     assert sympy.simplify(found.A - wanted.A) == sympy.zeros(*found.A.shape)
     assert sympy.simplify(found.B - wanted.B) == sympy.zeros(*found.B.shape)
     found.derivation.check()
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_sampled_plants_are_those_of_python_control(seed: int) -> None:
-    chance = random.Random(seed)  # noqa: S311 - repeats
-    n = chance.choice([1, 2, 2, 3])
-    A = [[chance.randint(-3, 3) for _ in range(n)] for _ in range(n)]
-    if n == 3:
-        A[2] = [0, 0, chance.randint(-3, 3)]  # so that the modes have a closed form
-    B = [[chance.randint(-2, 2) for _ in range(2)] for _ in range(n)]
-    C, D = [[1] * n], [[0, chance.randint(0, 1)]]
-    period = sympy.Rational(chance.randint(1, 9), 4)
-    plant = StateSpace(A, B, C, D)
-    found = symobs.zero_order_hold(plant, sampling_period=str(period))
-    wanted = control.sample_system(control.ss(A, B, C, D), float(period), "zoh")
-    for name in "ABCD":
-        mine = np.array(getattr(found, name).evalf().tolist(), float)
-        assert np.allclose(mine, getattr(wanted, name), rtol=1e-9, atol=1e-9)
-    sampled = found.sampled
-    assert (sampled.is_discrete, sampled.dt) == (True, period)
 
 
 def test_what_vanishes_is_a_case_and_values_go_in() -> None:
@@ -75,13 +52,6 @@ def test_a_plant_that_depends_on_an_open_sign_is_not_taken_for_one() -> None:
         _ = cubic.sampled
     for language, said in (("en", "the sampled plant is not given"), ("de", "die abgetastete Strecke nicht angegeben")):
         assert said in " ".join(cubic.to("text", language=language).split())
-
-
-@tabled
-def test_another_answer_is_rejected(name: str, said: str) -> None:
-    found = symobs.zero_order_hold(StateSpace("[-1 0; 1 0]", "[1; 0]"), sampling_period="T")
-    with pytest.raises(CertificateRejected, match=said):
-        type(found)(found.plant, found.method, {**found.answer, name: found.answer[name] * 2})
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ Judged by plain fractions and by SymPy; nothing here asks symobs whether symobs 
 from __future__ import annotations
 
 import random
-from contextlib import suppress
 from fractions import Fraction
 from typing import Any
 
@@ -19,42 +18,15 @@ from symobs.ground.errors import CertificateRejected, InputError
 from tests.kit import tabled, text_of
 from tests.support.algebra import (
     characteristic,
-    matrix_at,
-    multiply,
-    observability_rows,
-    rank_of,
-    subtract,
 )
-from tests.support.sampling import FULL
 
 pytestmark = pytest.mark.slow
 
-PLANTS = 500 if FULL else 30
 
 s = sympy.Symbol("s")
 
 TRIPLE = symobs.StateSpace("[0 1 0; 0 0 1; 1 2 3]", C="[1 0 0; 0 0 1]")
 CHAINS = symobs.StateSpace("[0 1 0; 0 0 0; 0 0 0]", "[0 0; 1 0; 0 1]")
-
-
-def integers(chance: random.Random, rows: int, columns: int, largest: int = 3) -> list[list[int]]:
-    return [[chance.randint(-largest, largest) for _ in range(columns)] for _ in range(rows)]
-
-
-def poles(chance: random.Random, order: int) -> list[str]:
-    """Draw repeated, complex and distinct poles, as many as the order."""
-    found: list[str] = []
-    while len(found) < order:
-        left = order - len(found)
-        kind = chance.choice(["real", "again", "pair"])
-        if kind == "pair" and left > 1:
-            a, b = chance.randint(-4, 0), chance.randint(1, 3)
-            found += [f"{a}+{b}i", f"{a}-{b}i"]
-        elif kind == "again" and found and "i" not in found[-1]:
-            found.append(found[-1])
-        else:
-            found.append(str(chance.randint(-5, 0)))
-    return found
 
 
 def wanted(listed: list[str]) -> list[Fraction]:
@@ -64,46 +36,11 @@ def wanted(listed: list[str]) -> list[Fraction]:
     return [Fraction(int(c.p), int(c.q)) for c in product.all_coeffs()]
 
 
-def turned(table: list[Any]) -> list[Any]:
-    return [list(column) for column in zip(*table, strict=True)]
-
-
 def fractions(matrix: Any) -> list[list[Fraction]]:
     return [[Fraction(int(x.p), int(x.q)) for x in matrix.row(i)] for i in range(matrix.rows)]
 
 
 # -- the spectrum is exact ---------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("number", range(PLANTS))
-def test_the_spectrum_is_exact_and_hidden_modes_are_told(number: int) -> None:
-    chance = random.Random(f"several {number}")  # noqa: S311 - the same in every run
-    order, outputs = chance.randint(1, 6), chance.randint(2, 3)
-    A, C = integers(chance, order, order), integers(chance, outputs, order, 2)
-    if order > 1 and chance.random() < 0.2:  # a state that no output shows
-        for i, row in enumerate([*A, *C]):
-            row[0] = row[0] if i == 0 else 0
-    listed = poles(chance, order)
-    phi = wanted(listed)
-    plain_A, plain_C = ([[Fraction(x) for x in row] for row in table] for table in (A, C))
-    rank = rank_of(observability_rows(plain_A, plain_C))
-    for method in ("auto", "row_reduced_echelon"):
-        found = symobs.observer(symobs.StateSpace(A, None, C), poles=listed, method=method)
-        back = symobs.state_feedback(symobs.StateSpace(turned(A), turned(C)), poles=listed, method=method)
-        assert found.verdict == back.verdict
-        assert (found.verdict == "yes") or rank < order
-        if found.verdict == "no":
-            assert found.fixed_modes
-            continue
-        assert found.L.T == back.K
-        assert characteristic(subtract(plain_A, multiply(fractions(found.L), plain_C))) == phi
-        family = found.fields["family"]
-        assert len(family["parameters"]) == rank * (outputs - 1) + (order - rank) * outputs
-        if family["L"] is not None and order < 5:
-            point = {name: Fraction(chance.randint(-9, 9)) for name in family["parameters"]}
-            with suppress(ZeroDivisionError):  # X is singular there
-                member = matrix_at(family["L"], point)
-                assert characteristic(subtract(plain_A, multiply(member, plain_C))) == phi
 
 
 # -- the family ----------------------------------------------------------------------------------------------------------

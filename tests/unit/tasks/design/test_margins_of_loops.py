@@ -4,92 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar  # type: ignore[import-untyped]
 
 import symobs
 from symobs import StateSpace
 from symobs.ground.errors import InputError
 from tests.kit import SERVO
-from tests.support.algebra import seeded
-from tests.support.sampling import seeds
-
-
-def drawn(seed: int) -> tuple[Any, Any, Any, bool]:
-    """Return P + N and P in floating point of a random loop, its margins, and whether time is discrete."""
-    draw = seeded(seed)
-    n, discrete = draw.randint(1, 3), draw.random() < 0.4
-
-    def matrix(rows: int, columns: int) -> list[list[Any]]:
-        size = 4 if discrete else 1
-        return [[f"{draw.randint(-3, 3)}/{size}" for _ in range(columns)] for _ in range(rows)]
-
-    A, B, C = matrix(n, n), matrix(n, 1), matrix(1, n)
-    plant, s = StateSpace(A, B, C, dt=int(discrete)), "z" if discrete else "s"
-    above = f"{draw.randint(-4, 4)}*{s} + {draw.randint(1, 9)}"
-    below = f"{s} + {draw.randint(-1, 6)}{'/8' if discrete else ''}"
-    result = symobs.margins(plant, controller=f"({above})/({below})")
-    matrices = [np.array([[eval_fraction(entry) for entry in row] for row in part]) for part in (A, B, C)]
-    characteristic = np.poly(matrices[0])
-    numerator = np.poly(matrices[0] - matrices[1] @ matrices[2]) - characteristic
-    over, under = (np.array([float(c) for c in _linear(text)]) for text in (above, below))
-    opened = np.polymul(characteristic, under)
-    return np.polyadd(opened, np.polymul(numerator, over)), opened, result, discrete
-
-
-def eval_fraction(text: str) -> float:
-    above, _, below = text.partition("/")
-    return float(above) / float(below or 1)
-
-
-def _linear(text: str) -> tuple[float, float]:
-    head, _, tail = text.partition(" + ")
-    return (eval_fraction(head.partition("*")[0]) if "*" in head else 1.0), eval_fraction(tail)
-
-
-@pytest.mark.parametrize("seed", seeds(6))
-def test_margins_are_those_on_the_boundary(seed: int) -> None:
-    """Hold verdict, gains, distance and angle to roots and minima on the boundary."""
-    closed, opened, found, discrete = drawn(seed)
-
-    def edge(polynomial: Any) -> float:
-        roots = np.roots(polynomial)
-        return float(max(abs(roots) - 1)) if discrete else float(max(roots.real))
-
-    worst = edge(closed)
-    if abs(worst) < 1e-5:
-        return
-    assert found.verdict == ("yes" if worst < 0 else "no")
-    assert float(found.slowest) == pytest.approx(worst + discrete, abs=1e-4)
-    if found.verdict == "no":
-        assert found.gain_up is None
-        return
-    low, high = float(found.gain_down), float(found.gain_up)
-    for k in np.linspace(low, min(high, 40.0), 23)[1:-1]:
-        assert edge(opened + k * (closed - opened)) < 1e-6
-    for end, outwards in ((low, 1 - 1e-3), (high, 1 + 1e-3)):
-        if 0 < end < np.inf:
-            assert edge(opened + end * outwards * (closed - opened)) > -1e-7
-    places = np.linspace(0, np.pi, 4001) if discrete else np.logspace(-4, 4, 8001)
-
-    def apart(w: float) -> float:
-        s = np.exp(1j * w) if discrete else 1j * w
-        return float(abs(np.polyval(closed, s) / np.polyval(opened, s)))
-
-    values = [apart(w) for w in places]
-    at = int(np.argmin(values))
-    bounds = places[max(at - 1, 0)], places[min(at + 1, len(places) - 1)]
-    best = min(values[at], minimize_scalar(apart, bounds=bounds, method="bounded", options={"xatol": 1e-12}).fun)
-    best = best if discrete else min(best, 1.0)
-    assert float(found.modulus) == pytest.approx(best, abs=1e-4)
-    assert float(found.peak) == pytest.approx(1 / best, rel=1e-4, abs=1e-5)
-    if found.fields["phase_deg"] != "oo":
-        turn = np.exp(1j * np.radians(float(found.phase_deg)))
-        s = np.exp(1j * places) if discrete else 1j * places
-        loop = np.polyval(closed, s) / np.polyval(opened, s) - 1
-        near = min(np.min(abs(1 + loop * turn)), np.min(abs(1 + loop / turn)))
-        assert near < 0.05  # the turned loop meets -1
 
 
 def test_the_task_finds_what_the_function_does() -> None:

@@ -26,8 +26,9 @@ from symobs.exact.floating.riccati_check import Regulator, excess, is_proved
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.formula.expression import parse_poles
 from symobs.ground.errors import CertificateRejected, InputError
-from tests.kit import tabled
-from tests.support.algebra import seeded
+from tests.kit import tabled, text_of
+from tests.support.algebra import random_fraction, seeded
+from tests.support.claims.claims import HOLDS, Setting, applicable
 from tests.support.paths import ROOT
 from tests.support.sampling import seeds
 
@@ -154,47 +155,22 @@ def test_textbook_problems(problem: dict[str, Any]) -> None:
 SIGNS = {"a": "real", "b": "nonzero", "q": "positive", "r": "positive"}
 
 
-def against_numbers(count: int, dt: int) -> None:
-    """Hold K and P of order two with four parameters to SciPy at random points, also where a case is asked."""
-    plant = symobs.StateSpace("[0 1; a 0]", "[0; b]", dt=dt, symbols=SIGNS)
-    result: Any = symobs.lqr(plant, Q="[q 0; 0 0]", R="r")
-    assert (result.verdict, [str(each) for each in result.conditions]) == (
-        ("conditional", ["Ne(a, 0)"]) if dt else ("yes", [])
-    )
-    draw = seeded(11)
-    for index in range(count):
-        a, b = draw.randint(-20, 20) / 4 if index else 0, draw.choice([-1, 1]) * draw.randint(1, 20) / 4
-        q, r = draw.randint(1, 30) / 8, draw.randint(1, 30) / 8
-        values = {sympy.Symbol(name): sympy.Rational(value) for name, value in zip("abqr", (a, b, q, r), strict=True)}
-        there = result if a or not dt else result.cases[0].result
-        P = np.array(there.P.subs(values).evalf().tolist(), dtype=complex)
-        K = np.array(there.K.subs(values).evalf().tolist(), dtype=complex)
-        A, B, R = np.array([[0, 1], [a, 0]]), np.array([[0], [b]]), np.array([[r]])
-        expected = (solve_discrete_are if dt else solve_continuous_are)(A, B, np.diag([q, 0.0]), R)
-        inner, coupled = (R + B.T @ expected @ B, B.T @ expected @ A) if dt else (R, B.T @ expected)
-        assert np.allclose(P, expected, rtol=1e-7, atol=1e-9), (a, b, q, r)
-        assert np.allclose(K, np.linalg.solve(inner, coupled), rtol=1e-7, atol=1e-9)
-
-
-@pytest.mark.parametrize("dt", [0, 1])
-@pytest.mark.parametrize("count", [12, pytest.param(200, marks=pytest.mark.slow)])
-def test_four_parameters_agree_with_numbers(count: int, dt: int) -> None:
-    against_numbers(count, dt)
-
-
-def test_a_sampled_double_integrator_with_three_parameters() -> None:
-    signs = dict.fromkeys("Tqr", "positive")
-    plant = symobs.StateSpace("[1 T; 0 1]", "[T^2/2; T]", dt=1, symbols=signs)
-    result: Any = symobs.lqr(plant, Q="[q 0; 0 0]", R="r")
-    assert (result.verdict, result.conditions) == ("yes", ())
-    T, q, r = map(sympy.Symbol, "Tqr")
-    for t, w, v in ((1, 1, 1), (2, 3, 5), (sympy.Rational(1, 3), 7, 2)):
-        P = np.array(result.P.subs({T: t, q: w, r: v}).evalf().tolist(), dtype=float)
-        A, B = np.array([[1, float(t)], [0, 1]]), np.array([[float(t) ** 2 / 2], [float(t)]])
-        assert np.allclose(P, solve_discrete_are(A, B, np.diag([float(w), 0]), np.array([[float(v)]])), rtol=1e-9)
-    text = result.to("text")
-    assert "ν² = r(q T² + 8√(q r)) and ν > 0" in " ".join(text.split())
-    assert "ν > 0" in result.to("text", language="de")
+@tabled
+def test_closed_forms_hold_at_points(
+    A: str, B: str, Q: str, dt: int, signs: dict[str, str], conditions: list[str], said: str
+) -> None:
+    """Riccati's equation in sixty digits, in the cases too: what is real is 0 at the first point."""
+    plant = symobs.StateSpace(A, B, dt=dt, symbols=signs)
+    result: Any = symobs.lqr(plant, Q=Q, R="r")
+    assert [str(each) for each in result.conditions] == conditions
+    assert said in text_of(result)
+    for number in range(13):
+        point = {
+            name: random_fraction(seeded((name, number)), sign) if number or sign != "real" else Fraction(0)
+            for name, sign in signs.items()
+        }
+        (part,) = applicable(result, point)
+        HOLDS["lqr"](part, Setting.of(plant, {}, point))
 
 
 def test_conditions_and_what_is_true_where_they_fail() -> None:
@@ -314,20 +290,6 @@ def test_what_is_too_long_is_undecided_and_the_factors_show_that_the_loop_is_sta
     assert (long.verdict, long.question) == ("undecided", "its closed form is too long")
     seen: Any = symobs.lqr(symobs.StateSpace("[b 0; b a]", "[1 1; 1 0]"), Q="[q 0; 0 0]", R="r")
     assert seen.verdict == "conditional"
-
-
-def test_a_scalar_in_discrete_time_with_four_parameters() -> None:
-    result: Any = symobs.lqr(symobs.StateSpace("[a]", "[b]", dt=1, symbols=SIGNS), Q="q", R="r")
-    assert [str(condition) for condition in result.conditions] == ["Ne(a, 0)"]
-    draw = seeded(5)
-    for _ in range(12):
-        a, b = draw.choice([-1, 1]) * draw.randint(1, 20) / 4, draw.choice([-1, 1]) * draw.randint(1, 20) / 4
-        q, r = draw.randint(1, 30) / 8, draw.randint(1, 30) / 8
-        values = {sympy.Symbol(name): sympy.Rational(value) for name, value in zip("abqr", (a, b, q, r), strict=True)}
-        expected = solve_discrete_are(*(np.array([[value]]) for value in (a, b, q, r)))[0, 0]
-        assert np.isclose(float(result.P[0, 0].subs(values)), expected, rtol=1e-8)
-    (case,) = result.cases
-    assert (case.result.K[0, 0], case.result.P[0, 0]) == (0, sympy.Symbol("q"))
 
 
 def test_a_mode_that_may_lie_on_the_boundary_is_left_open() -> None:

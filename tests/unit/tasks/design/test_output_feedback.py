@@ -14,7 +14,6 @@ from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
 from tests.kit import SERVO, tabled, text_of
 from tests.support.algebra import (
-    at_number,
     characteristic,
     determinant,
     identity,
@@ -74,66 +73,6 @@ def wanted(generator: random.Random, degree: int) -> tuple[list[str], list[Fract
 
 def texts(rows: Rows) -> list[list[str]]:
     return [[str(entry) for entry in row] for row in rows]
-
-
-@pytest.mark.parametrize("feedthrough", [False, True], ids=["", "feedthrough"])
-@pytest.mark.parametrize("observer", ["full", "minimal"])
-@pytest.mark.parametrize("size", SIZES, ids=str)
-def test_the_loop_has_the_poles_of_control_and_observer(
-    size: tuple[int, int, int], observer: str, *, feedthrough: bool
-) -> None:
-    """Det(I + P F) χ_P χ_F = φ_c φ_o det(I + D F(∞)) at numbers s, F read off the answer entry by entry."""
-    order, inputs, outputs = size
-    met = 0
-    for draw in range(max(1, DRAWS // (4 * len(SIZES)))):
-        generator = seeded((size, observer, feedthrough, draw))
-        A, B, C, D = plant(generator, order, inputs, outputs, feedthrough=feedthrough)
-        control, phi_c = wanted(generator, order)
-        estimated, phi_o = wanted(generator, order - (outputs if observer == "minimal" else 0))
-        found = symobs.compensator(
-            StateSpace(texts(A), texts(B), texts(C), texts(D)),
-            control_poles=control,
-            observer_poles=estimated,
-            observer=observer,
-        )
-        if found.answer["F"] is None:  # ill-posed: said so, with the determinant that vanishes
-            assert observer == "minimal"
-            assert feedthrough
-            assert any("det(I - N*D) = 0" in certificate.claim for certificate in found.certificates)
-            continue
-        met += 1
-        own = matrix_at(found.fields["compensator_matrix"], {})
-        direct = matrix_at(found.fields["direct_term"], {}) if observer == "minimal" else drawn_zero(inputs, outputs)
-        whole = product([phi_c, phi_o])
-        for s in (Fraction(7, 3), Fraction(-9, 4), Fraction(11)):
-            F = function_at(found.answer["F"], s)
-            P = plus(multiply(multiply(C, inverse(subtract(times(s, identity(order)), A))), B), D)
-            loop = determinant(plus(identity(outputs), multiply(P, F)))
-            own_chi = at_number(characteristic(own), s)
-            expected = at_number(whole, s) * determinant(plus(identity(outputs), multiply(D, direct)))
-            assert loop * at_number(characteristic(A), s) * own_chi == expected
-            G = [[entry_at(entry, s) for entry in row] for row in rows_of(found.fields["closed_loop"])]
-            assert multiply(plus(identity(outputs), multiply(P, F)), G) == P
-        large = Fraction(10**60)
-        for row, limits in zip(function_at(found.answer["F"], large), direct, strict=True):
-            assert all(abs(entry - limit) < Fraction(1, 10**6) for entry, limit in zip(row, limits, strict=True))
-    assert met
-
-
-def drawn_zero(rows: int, columns: int) -> Rows:
-    return [[Fraction(0)] * columns for _ in range(rows)]
-
-
-def function_at(F: Any, s: Fraction) -> Rows:
-    return matrix_at(F if isinstance(F, Matrix) else Matrix.of([[F]]), {"s": s})
-
-
-def rows_of(value: Any) -> Any:
-    return value if isinstance(value, tuple) else ((value,),)
-
-
-def entry_at(entry: Any, s: Fraction) -> Fraction:
-    return matrix_at(Matrix.of([[entry.value]]), {"s": s})[0][0]
 
 
 def test_the_ill_posed_loop_is_refused_with_its_reason() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,59 +10,7 @@ from scipy.linalg import expm  # type: ignore[import-untyped]
 
 import symobs
 from symobs.ground.errors import InputError, ShapeMismatch
-from tests.kit import SERVO, tables, text_of
-from tests.support.algebra import seeded
-from tests.support.sampling import seeds
-
-GENERATORS = tables(Path(__file__))["generators"]
-
-
-def drawn(seed: int) -> tuple[dict[str, np.ndarray[Any, Any]], Any]:
-    """Return the matrices of a random problem, and the result."""
-    draw = seeded(seed)
-    n, m, p = draw.randint(1, 3), draw.randint(1, 2), draw.randint(1, 2)
-
-    def matrix(rows: int, columns: int, zeros: float) -> list[list[int]]:
-        return [[0 if draw.random() < zeros else draw.randint(-2, 2) for _ in range(columns)] for _ in range(rows)]
-
-    S = [list(row) for row in draw.choice(GENERATORS)]
-    D = matrix(p, m, 0.5) if draw.random() < 0.3 else [[0] * m for _ in range(p)]
-    parts = {"A": matrix(n, n, 0.3), "B": matrix(n, m, 0.3), "C": matrix(p, n, 0.3), "D": D}
-    exogenous = {"S": S, "reference": matrix(p, len(S), 0.3), "E": matrix(n, len(S), 0.5)}
-    plant = symobs.StateSpace(parts["A"], parts["B"], parts["C"], D, dt=draw.choice([0, 1]))
-    result = symobs.output_regulation(plant, K=matrix(m, n, 0.3), **exogenous)  # type: ignore[arg-type]
-    return {name: np.array(part, dtype=float) for name, part in (parts | exogenous).items()}, result
-
-
-@pytest.mark.parametrize("seed", seeds(12))
-def test_solutions_are_those_of_the_linear_equations(seed: int) -> None:
-    """Hold Π and Γ to the residual of least squares, F to its law, and the eigenvalues that block to their ranks."""
-    given, result = drawn(seed)
-    A, B, C, D, S, Q, E = given.values()
-    n, q, p = len(A), len(S), len(C)
-    one = np.eye(q)
-    table = np.block(
-        [[np.kron(np.eye(n), S.T) - np.kron(A, one), -np.kron(B, one)], [np.kron(C, one), np.kron(D, one)]]
-    )
-    right = np.concatenate([E.flatten(), Q.flatten()])
-    best = np.linalg.lstsq(table, right, rcond=1e-10)[0]
-    assert result.solvable == np.allclose(table @ best, right, atol=1e-8), given
-    assert result.verdict == ("yes" if result.solvable else "no")
-    lost = [
-        value
-        for value in np.linalg.eigvals(S)
-        if np.linalg.matrix_rank(np.block([[A - value * np.eye(n), B], [C, D]]), tol=1e-6) < n + p
-    ]
-    found = sorted({complex(mode) for mode in result.blocked_modes}, key=lambda mode: (mode.real, mode.imag))
-    assert len(found) == len({complex(round(v.real, 6), round(v.imag, 6)) for v in lost})
-    assert all(min(abs(mode - value) for value in lost) < 1e-6 for mode in found)
-    if not result.solvable:
-        assert lost, given
-        return
-    Pi, Gamma, K, F = (np.array(part.tolist(), dtype=float) for part in (result.Pi, result.Gamma, result.K, result.F))
-    assert np.allclose(A @ Pi + B @ Gamma + E, Pi @ S)
-    assert np.allclose(C @ Pi + D @ Gamma, Q)
-    assert np.allclose(F, Gamma + K @ Pi)
+from tests.kit import SERVO, text_of
 
 
 def test_the_compensator_follows_in_simulation() -> None:

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import pickle
-from typing import TYPE_CHECKING, Any
 
 import pytest
-import sympy
-from hypothesis import assume, given
-from hypothesis import strategies as st
-from sympy import Matrix, Rational
+from sympy import Matrix
 
 import symobs
 from symobs import StateSpace
@@ -20,65 +16,7 @@ from symobs.pages.formats.json import result_object
 from symobs.tasks.design.reduced_order.reduced_order_observer import completed
 from tests.kit import tabled, text_of
 
-if TYPE_CHECKING:
-    from fractions import Fraction
-
-s = sympy.Symbol("s")
-
 THIRD_ORDER = StateSpace("[-7 1 15; -2 0 5; -2 0 4]", "[65; -5; 30]", "[1 0 -2]")
-
-
-def holds(found: Any, A: Any, B: Any, C: Any, D: Any, phi: Any) -> None:
-    """Hold an observer against its equations, in SymPy alone."""
-    T, L, F, G, H, M = (getattr(found, name) for name in "TLFGHM")
-    measured = C.rows
-    P = T[measured:, :] - L * T[:measured, :]
-    assert T[:measured, :] == C
-    zero = P * A - F * P - H * C
-    assert zero.applyfunc(sympy.cancel) == sympy.zeros(*zero.shape)
-    if B is not None:
-        driven = G - P * B + H * D
-        assert driven.applyfunc(sympy.cancel) == sympy.zeros(*driven.shape)
-    assert (M * C.col_join(P)).applyfunc(sympy.cancel) == sympy.eye(A.rows)
-    assert sympy.cancel((s * sympy.eye(F.rows) - F).det() - phi) == 0
-
-
-entries = st.integers(-4, 4)
-
-
-@st.composite
-def plants(draw: st.DrawFn) -> tuple[Any, Any, Any, Any]:
-    order = draw(st.integers(2, 4))
-    rows = [[draw(entries) for _ in range(order)] for _ in range(order)]
-    column, output = [draw(entries) for _ in range(order)], [draw(entries) for _ in range(order)]
-    return Matrix(rows), Matrix(column), Matrix([output]), Matrix([[draw(entries)]])
-
-
-@pytest.mark.slow
-@given(plants(), st.lists(st.fractions(-5, 5, max_denominator=3), min_size=3, max_size=3))
-def test_the_equations_hold_for_any_plant(drawn: tuple[Any, Any, Any, Any], poles: list[Fraction]) -> None:
-    A, B, C, D = drawn
-    assume(any(C))
-    order = A.rows
-    wanted = poles[: order - 1]
-    found = symobs.reduced_order_observer(StateSpace(A, B, C, D), poles=wanted)
-    rank = Matrix.vstack(*[C * A**k for k in range(order)]).rank()
-    if rank == order:
-        assert found.verdict == "yes"
-    if found.verdict == "yes":
-        phi = sympy.prod(s - Rational(p.numerator, p.denominator) for p in wanted)
-        holds(found, A, B, C, D, phi)
-    else:
-        assert rank < order
-        assert found.fixed_modes
-
-
-@tabled
-def test_no_entry_can_be_changed(name: str) -> None:
-    found = symobs.reduced_order_observer(THIRD_ORDER, poles="-5, -6")
-    value = found.answer[name]
-    with pytest.raises(CertificateRejected):
-        found.with_answer(name, value + value)
 
 
 def test_discrete_time_with_feedthrough() -> None:

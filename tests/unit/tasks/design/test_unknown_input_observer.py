@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from random import Random
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 import sympy
@@ -11,45 +10,7 @@ import sympy
 import symobs
 from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
-from tests.kit import scalars, tabled, text_of
-
-if TYPE_CHECKING:
-    from symobs.tasks.design.disturbance.unknown_input_observer import UnknownInputObserver
-
-
-def drawn(random: Random, rows: int, columns: int) -> Any:
-    return sympy.Matrix(rows, columns, lambda *_: random.randint(-3, 3))
-
-
-def pencil(A: Any, E: Any, C: Any) -> Any:
-    """Return [zI − A, −E; C, 0]."""
-    upper = sympy.Matrix.hstack(sympy.Symbol("z") * sympy.eye(A.rows) - A, -E)
-    return sympy.Matrix.vstack(upper, sympy.Matrix.hstack(C, sympy.zeros(C.rows, E.cols)))
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_the_error_of_two_steps_is_free_of_u_and_d_and_the_zeros_are_poles(seed: int) -> None:
-    random = Random(seed)  # noqa: S311 - test data
-    n, p, q = [(2, 1, 1), (3, 2, 1), (3, 2, 2), (4, 2, 1)][seed]
-    A, B, C, D, E = (drawn(random, *size) for size in ((n, n), (n, 1), (p, n), (p, 1), (n, q)))
-    plant = symobs.StateSpace(A, B, C, D, dt=True)
-    found = symobs.unknown_input_observer(plant, E=E, polynomial=f"z^{n}")
-    assert found.solvable == ((C * E).rank() == E.rank())
-    if found.solvable and p == q:  # the zeros are the roots of a determinant
-        fixed = sympy.Mul(*(sympy.Symbol("z") - root for root in found.fixed_modes))
-        assert sympy.rem(pencil(A, E, C).det(method="berkowitz"), sympy.expand(fixed), sympy.Symbol("z")) == 0
-        assert len(found.fixed_modes) == n - q
-    elif found.solvable:
-        assert all(pencil(A, E, C).subs("z", root).rank() < n + q for root in found.fixed_modes)
-    if found.L is None:
-        assert found.verdict == "no"
-        return
-    x, z = drawn(random, n, 1), drawn(random, n, 1)
-    for _ in range(n):  # all poles at 0: after n steps the estimate is the state, whatever u and d were
-        u, d = drawn(random, 1, 1), drawn(random, q, 1)
-        x, z = A * x + B * u + E * d, found.F * z + found.B_u * u + found.B_y * (C * x + D * u)
-    u = drawn(random, 1, 1)
-    assert z + found.H * (C * x + D * u - D * u) == x
+from tests.kit import tabled, text_of
 
 
 def test_conditions_and_cases_are_those_of_the_rank_and_of_the_zeros() -> None:
@@ -76,14 +37,6 @@ def test_why_there_is_no_observer_is_said(C: str, poles: str, said: str) -> None
     found = symobs.unknown_input_observer(symobs.StateSpace("[0 1; -2 -3]", C=C), E="[0; 1]", poles=poles)
     assert found.verdict == "no"
     assert said in text_of(found)
-
-
-@tabled
-def test_a_wrong_answer_is_rejected(name: str, value: Any) -> None:
-    plant = symobs.StateSpace("[-1 1 0; -1 0 0; 0 -1 -1]", "[0; 1; 0]", "[1 0 0; 0 0 1]")
-    design: UnknownInputObserver = symobs.unknown_input_observer(plant, E="[-1; 0; 0]", poles="-2, -3, -4")
-    with pytest.raises(CertificateRejected):
-        design.with_answer(name, Matrix.of([scalars(row) for row in value]))
 
 
 def test_a_direction_that_is_seen_is_no_reason_for_a_no() -> None:
