@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import pytest
-
 import symobs
 from symobs import StateSpace, compensator, controllability, state_feedback
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import square_root
-from symobs.formula.tree import Apply, Environment, Letter, Literal, Relation
-from symobs.ground.errors import DerivationRejected
+from symobs.formula.tree import Apply, Environment, Literal, Relation
 from symobs.proof.certificate.claims import verify
 from symobs.proof.certificate.pointwise import never_together_zero
-from symobs.proof.derivation import Derivation
-from symobs.proof.derivation.steps import CaseStep, Conclude, Define, Given
 from tests.kit import tabled
 
 if TYPE_CHECKING:
@@ -38,29 +33,6 @@ def test_a_product_of_what_does_not_vanish_does_not_vanish() -> None:
     circle = (c**2 + s**2 - 1,)
     assert never_together_zero([b**4 - 1 + c**2], circle, {}, (b**2 + s, b**2 - s))
     assert not never_together_zero([b**4 - 1 + c**2], circle, {}, (b**2 + s,))
-
-
-def rank_on_the_curve(given: Matrix, says: int) -> None:
-    """Check a page that gives B, and on the curve says the rank of [-k; m]."""
-    kernel = Matrix.of([[-k], [m]])
-    here = Relation((Literal(CURVE), Literal(Scalar.of(0))), ("=",))
-    rank = Relation((Apply("rank", Letter("N")), Literal(Scalar.of(says))), ("=",))
-    inside = (Define(Relation((Letter("N"), Literal(kernel)), ("=",))), Conclude(None, facts=(rank,)))
-    data = Given((Relation((Letter("B"), Literal(given)), ("=",)),))
-    Derivation((data, CaseStep(here, (), inside)), Environment()).check()
-
-
-def test_denominators_of_data_do_not_vanish_on_a_stratum() -> None:
-    """At k = m = 0 the rank would be 0; only where B has no value there is it 1 on the whole curve."""
-    one = Scalar.of(1)
-    rank_on_the_curve(Matrix.of([[one], [k / m]]), 1)
-    for given, says in (
-        (Matrix.of([[one], [k]]), 1),
-        (Matrix.of([[one], [one / (k + 1)]]), 1),
-        (Matrix.of([[k / m]]), 2),
-    ):
-        with pytest.raises(DerivationRejected, match=r"the line rank\(N\) = 1|the line rank\(N\) = 2"):
-            rank_on_the_curve(given, says)
 
 
 def test_the_page_of_a_gain_holds_on_such_a_curve() -> None:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
-
 import symobs
 from tests.kit import tabled
 
@@ -32,43 +30,9 @@ def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
     assert found.to("text").count("Case ") == 2
 
 
-@pytest.mark.parametrize(
-    ("task", "data", "asked"),
-    [
-        # a fixed mode with a letter among the poles that are asked for
-        ("state_feedback", ("[-2 0 0; 0 b a-b; 0 0 a]", "[0; 1+c; c]"), {"poles": "-p, -2*p, a"}),
-        ("observer", ("[-1 b+a^2+1 0; 0 a^2 0; 0 0 a]", None, "[a b-a 0]"), {"poles": "-q, a^2, -1"}),
-        # roots of numbers beside the root of a discriminant
-        ("matrix_exponential", ("[1-sqrt(3) 2; a-sqrt(2) sqrt(2)]",), {}),
-        ("zero_order_hold", ("[-2 a; -1 sqrt(3)-1]", "[sqrt(2); -2]"), {}),
-        # a real part with a root, √2/2 ± √10/2
-        ("matrix_exponential", ("[sqrt(2) sqrt(2); sqrt(2) 0]",), {}),
-        # several inputs, and no family is known
-        ("state_feedback", ("[0 0; cos(b) a]", "[exp(-a) 1; 0 -b]"), {"poles": "-1, -2"}),
-        # a family of gains beside √2, in which no parameter of the plant is lost
-        (
-            "integral_action",
-            ("[0 0 2; 0 0 1+sqrt(2); 1 1 -2]", "[-2 2; 0 0; 1 0]", "[sqrt(2) 1 -2]"),
-            {"poles": "1, 0, i, -i"},
-        ),
-        # no unknown input, and a pair that is observable for a ≠ 0
-        ("unknown_input_observer", ("[1 a; 0 2]", None, "[1 0]"), {"E": "[0; 0]", "poles": "-1, -2"}),
-        # a case in a case, where the matrices of the outer one have equal values but divide by cos b
-        (
-            "feedforward",
-            ("[0 1; -b -b]", "[1-exp(b); a]", "[1 exp(-a)]"),
-            {"control_poles": "-1, -2", "observer_poles": "-1, -2"},
-        ),
-        ("decomposition", ("[0 0; a 0]", "[exp(-a) 0; cos(b) 0]", "[0 -1]"), {}),
-        (
-            "gramian",
-            ("[0 1; 1+exp(b) b]", "[1; 0]"),
-            {"of": "controllability", "horizon": "1"},
-        ),  # a root of e^b, and e^{b/2}
-    ],
-)
-def test_pages_beside_letters_and_roots(task: str, data: tuple[str | None, ...], asked: dict[str, str]) -> None:
-    assert getattr(symobs, task)(S(*data), **asked).to("text")
+@tabled
+def test_pages_beside_letters_and_roots(task: str, data: dict[str, str], asked: dict[str, str]) -> None:
+    assert getattr(symobs, task)(S(**data), **asked).to("text")
 
 
 def test_an_input_has_the_exponentials_of_its_plant() -> None:

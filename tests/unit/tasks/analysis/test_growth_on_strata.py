@@ -16,10 +16,3 @@ def test_an_undecided_stratum_does_not_make_a_growing_mode_conditional(meaning: 
     answer = symobs.detectability(plant, meaning=meaning)
     assert {case["verdict"] for case in result_object(answer)["cases"]} == {"no", "undecided"}
     assert answer.verdict == "no"
-
-
-def test_a_gramian_over_all_time_has_a_page_where_a_coefficient_vanishes_on_a_stratum() -> None:
-    A = "[-b 1/10 1/a; 1/10 1/a omega^2; 1 -1 1/a]"
-    signs = {"a": "real", "b": "nonzero", "omega": "real"}
-    plant = symobs.StateSpace(A, "[-1 1; -1 0; -3 -3]", "[-1 -3 0; 1/2 0 1/10]", symbols=signs)
-    assert "450" in symobs.gramian(plant, horizon="inf").to_html()

@@ -15,6 +15,7 @@ from symobs.problem import read
 from symobs.problem.expect import mismatches
 from symobs.problem.question import question_of
 from symobs.tasks.result import render
+from tests.kit import tabled
 from tests.support.sampling import seeds
 
 k = sympy.Symbol("k")
@@ -130,21 +131,8 @@ def test_values_and_questions_read_what_the_task_reads() -> None:
     assert "The input from k = 0 on is [1 0 2]" in str(render(question_of(read(text)), "text"))
 
 
-@pytest.mark.parametrize(
-    ("A", "powers", "is_met"),
-    [
-        ("[2 1; 0 3]", "[2^k 3^k-2^k; 0 3^k]", True),
-        ("[2 1; 0 3]", "[2^k 3*3^(k-1) - 2^(k+1)/2; 0 3^k]", True),
-        ("[2 1; 0 3]", "[2^k 3^k-2^(2*k); 0 3^k]", False),
-        ("[6]", "[2^k*3^k]", True),
-        ("[4]", "[(-2)^k*(-2)^k]", True),
-        ("[-2]", "[(-1)^k*2^k]", True),
-        ("[1/2]", "[0.5^k]", True),
-        ("[2*a]", "[2^k*a^k]", True),
-        ("[6]", "[2^k*3^(k+1)]", False),
-    ],
-)
-def test_powers_of_k_are_read_where_an_answer_is_expected(A: str, powers: str, is_met: bool) -> None:  # noqa: FBT001
+@tabled
+def test_powers_of_k_are_read_where_an_answer_is_expected(A: str, powers: str, *, is_met: bool) -> None:
     data = f'task = "matrix_exponential"\n[symbols]\na = "real"\n[plant]\nA = "{A}"\ndt = true\n'
     found = read(f'{data}[expect]\nmatrix = "{powers}"\n')
     assert (not mismatches(found.solve(), found.expect)) == is_met

@@ -5,7 +5,6 @@ Plants are drawn so that their eigenvalues are simple in the parameters, and poi
 
 from __future__ import annotations
 
-import ast
 import json
 from collections import Counter
 from dataclasses import replace
@@ -77,31 +76,9 @@ def hidden_map(A: Any, C: Any) -> Any:
 
 
 def number(text: str, point: dict[str, Fraction]) -> Any:
-    """Read an expression at a point, by Python's grammar: a number, or a polynomial in s."""
-    values = {"s": s, "I": sympy.I} | {name: sympy.Rational(v.numerator, v.denominator) for name, v in point.items()}
-    operations = {
-        ast.Add: "__add__",
-        ast.Sub: "__sub__",
-        ast.Mult: "__mul__",
-        ast.Div: "__truediv__",
-        ast.Pow: "__pow__",
-    }
-
-    def read(node: ast.expr) -> Any:
-        match node:
-            case ast.Constant(value=int(found)):
-                return sympy.Integer(found)
-            case ast.Name(id=name):
-                return values[name]
-            case ast.UnaryOp(op=ast.USub(), operand=inner):
-                return -read(inner)
-            case ast.Call(func=ast.Name(id="sqrt"), args=[inner]):
-                return sympy.sqrt(read(inner))
-            case ast.BinOp(left=left, op=operation, right=right):
-                return getattr(read(left), operations[type(operation)])(read(right))
-        raise ValueError(text)
-
-    return read(ast.parse(text, mode="eval").body)
+    """Read an expression at a point: a number, or a polynomial in s."""
+    values = {name: sympy.Rational(v.numerator, v.denominator) for name, v in point.items()}
+    return sympy.sympify(text, locals={"s": s}).subs(values)  # noqa: TID251 - what the kernel wrote, never a user's
 
 
 def check_modes(answer: dict[str, Any], A: Any, C: Any, point: dict[str, Fraction]) -> None:
@@ -229,26 +206,15 @@ def test_no_limit_leaves_a_verdict_as_an_exception(monkeypatch: pytest.MonkeyPat
 # -- the claims ----------------------------------------------------------------------------------------------------------
 
 
-def test_a_rank_told_without_its_condition_is_rejected() -> None:
+@pytest.mark.parametrize(
+    "lie",
+    [{"systems": ()}, {"systems": ((Scalar.of(0),),)}, {"systems": ((),)}, {"minors": (((), ()),)}],
+    ids=["no condition", "never met", "always met", "minors of another order"],
+)
+def test_a_rank_told_with_other_conditions_is_rejected(lie: dict[str, Any]) -> None:
     found = symobs.detectability(symobs.StateSpace("[1-a 0; 0 -1]", None, "[0 0]"))
-    silent = tuple(replace(where, systems=()) for where in found.answer["constancy"])
     with pytest.raises(CertificateRejected):
-        found.with_answer("constancy", silent)
-
-
-def test_a_condition_that_is_never_met_is_rejected() -> None:
-    found = symobs.detectability(symobs.StateSpace("[1-a 0; 0 -1]", None, "[0 0]"))
-    for system in ((Scalar.of(0),), ()):
-        nowhere = tuple(replace(where, systems=(system,)) for where in found.answer["constancy"])
-        with pytest.raises(CertificateRejected):
-            found.with_answer("constancy", nowhere)
-
-
-def test_minors_of_another_order_are_rejected() -> None:
-    found = symobs.detectability(symobs.StateSpace("[1-a 0; 0 -1]", None, "[0 0]"))
-    smaller = tuple(replace(where, minors=(((), ()),)) for where in found.answer["constancy"])
-    with pytest.raises(CertificateRejected):
-        found.with_answer("constancy", smaller)
+        found.with_answer("constancy", tuple(replace(where, **lie) for where in found.answer["constancy"]))
 
 
 def test_what_an_eigenvalue_leaves_to_the_parameters_is_real() -> None:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
-import pytest
 import sympy
 
 import symobs
 from symobs import StateSpace
 from tests.kit import text_of
-from tests.support.algebra import multiply, observability_rows, rank_of, transposed
 
 c = sympy.Symbol("c")
 
@@ -27,18 +23,3 @@ def test_a_cancellation_is_a_case() -> None:
     there = cases[c**2 - 2]  # over a field with a root of 2: the zero has gone to infinity
     assert (set(there.poles), there.zeros) == ({0, 1}, ())
     assert "poles and zeros provided that" in text_of(found)
-
-
-@pytest.mark.parametrize("value", [Fraction(p, q) for p in range(-4, 5) for q in (1, 2)], ids=str)
-def test_there_are_as_many_poles_as_states_that_are_reached_and_seen(value: Fraction) -> None:
-    """The rank of 𝒪𝒞 at a point, in plain fractions, against what the case that holds there says."""
-    found = symobs.transfer_function(CANCELLING)
-    point = {c: sympy.Rational(value.numerator, value.denominator)}
-    for case in found.cases:
-        if all(bool(relation.subs(point)) for relation in case.when):
-            found = case.result
-    zero, one = Fraction(0), Fraction(1)
-    A, B, C = [[zero, zero], [-value, one]], [[-one], [one]], [[-(value**2), -2 * one]]
-    reached = transposed(observability_rows(transposed(A), transposed(B)))
-    hankel = multiply(observability_rows(A, C), reached)
-    assert len(found.poles) == rank_of(hankel)

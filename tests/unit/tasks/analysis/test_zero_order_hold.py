@@ -54,16 +54,7 @@ def test_a_plant_that_depends_on_an_open_sign_is_not_taken_for_one() -> None:
         assert said in " ".join(cubic.to("text", language=language).split())
 
 
-@pytest.mark.parametrize(
-    ("plant", "period", "said"),
-    [
-        (StateSpace("[-1]", "[1]", dt=1), 1, "zero_order_hold belongs to continuous time"),
-        (StateSpace("[-1]", "[1]"), "inf", "the sampling period inf is no number"),
-        (StateSpace("[-1]", "[1]"), 0, "the sampling period 0 is not positive"),
-        (StateSpace("[-1]", "[1]"), "exp(T)", "the sampling period .* is no rational expression"),
-        (StateSpace("[-1]"), 1, "B"),
-    ],
-)
-def test_what_cannot_be_sampled_is_refused(plant: StateSpace, period: Any, said: str) -> None:
+@tabled
+def test_what_cannot_be_sampled_is_refused(plant: dict[str, Any], period: Any, said: str) -> None:
     with pytest.raises(InputError, match=said):
-        symobs.zero_order_hold(plant, sampling_period=period)
+        symobs.zero_order_hold(StateSpace(**plant), sampling_period=period)

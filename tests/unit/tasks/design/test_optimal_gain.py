@@ -231,25 +231,7 @@ def test_an_obstacle_is_named() -> None:
         result.to("text")
 
 
-def test_the_filter_is_dual_to_the_regulator() -> None:
-    data, dt = drawn(3)
-    turned = {name: [list(row) for row in zip(*data[name], strict=True)] for name in "AB"}
-    feedback: Any = symobs.lqr(
-        symobs.StateSpace(text(data["A"]), text(data["B"]), dt=dt), Q=text(data["Q"]), R=text(data["R"])
-    )
-    found: Any = symobs.kalman(
-        symobs.StateSpace(text(turned["A"]), None, text(turned["B"]), dt=dt), W=text(data["Q"]), V=text(data["R"])
-    )
-    assert found.decimals["P"] == feedback.decimals["P"]
-    assert [list(row) for row in zip(*found.decimals["L"], strict=True)] == feedback.decimals["K"]
-
-
 def test_lies_are_rejected() -> None:
-    result: Any = symobs.lqr(symobs.StateSpace("[0 1; 2 0]", "[0; 1]"), Q="[5 0; 0 0]", R="1")
-    K, P = result.answer["K"], result.answer["P"]
-    for name, value in (("K", K * 2), ("P", P * 2), ("P", -P), ("polynomial", result.answer["polynomial"] + 1)):
-        with pytest.raises(CertificateRejected):
-            result.with_answer(name, value)
     other: Any = symobs.lqr(symobs.StateSpace("[0 1 0; 0 0 1; 1 2 3]", "[0; 0; 1]"), Q="1", R="1")
     digits = other.answer["digits"]
     first = digits.K[0][0]

@@ -128,16 +128,6 @@ def test_what_does_not_fit_together_is_refused_with_the_repair(keywords: Any, wh
     assert words in caught.value.repair
 
 
-def test_nothing_is_left_to_estimate_where_the_outputs_show_the_state() -> None:
-    with pytest.raises(InputError, match="nothing is left to estimate"):
-        symobs.compensator(
-            StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0; 0 1]"),
-            control_poles=[-2, -2],
-            observer_poles=[],
-            observer="minimal",
-        )
-
-
 # -- what a reading of the whole found ------------------------------------------------------------------------------------
 
 
@@ -152,25 +142,6 @@ def test_what_uses_the_estimate_needs_a_law_that_can_be_solved() -> None:
     parametric = symobs.feedforward(StateSpace(*ill_posed[:3], "d"), observer="minimal", **asked)
     assert [str(condition) for condition in parametric.conditions] == ["Ne(31*d - 1, 0)"]
     assert [case.result.verdict for case in parametric.case_tree if case.result is not None] == ["no"]
-
-
-@pytest.mark.parametrize(
-    ("plant", "control", "observer"),
-    [
-        (("[1 0; 0 2]", "[1; 0]", "[0 1]"), ["-1", "-2"], ["-3", "-4"]),
-        (("[-1 0 0; 0 2 0; 0 0 -5]", "[0; 1; 1]", "[1 1 0]"), ["-1", "-2", "-3"], ["-5", "-4", "-3"]),
-        (("[-1 0; 0 -2]", "[1/2 -1; 1/2 0]", "[0 1]"), ["-1", "-1"], ["-1", "-2"]),
-    ],
-    ids=["both_sides_impossible", "both_sides_keep_modes", "no_compensator_needed"],
-)
-def test_pages_of_plants_that_are_hidden_on_both_sides(plant: Any, control: list[str], observer: list[str]) -> None:
-    assert symobs.compensator(StateSpace(*plant), control_poles=control, observer_poles=observer).to("text")
-
-
-def test_a_pole_three_times_in_discrete_time_has_a_page() -> None:
-    plant = StateSpace("[-1 2 1; -2 -1 0; 2 1 2]", "[-2; 0; 0]", "[1 0 0]", dt=True)
-    found = symobs.compensator(plant, control_poles=["-1/2"] * 3, observer_poles=[-2] * 3)
-    assert "Remark." in found.to("text")
 
 
 @pytest.mark.slow

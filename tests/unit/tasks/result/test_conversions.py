@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import random
 
 import pytest
@@ -12,7 +11,6 @@ import symobs
 from symobs.exact import Scalar
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 from symobs.ground.errors import UsageError
-from tests.kit import SERVO
 
 NAMES = ["a", "b", "x_1", "zeta", "A", "s"]
 
@@ -60,14 +58,6 @@ def test_what_is_shown_of_a_large_answer_is_short() -> None:
     assert repr(design).startswith("ObserverDesign(L=<")
     assert len(repr(design)) < 300
     assert "holds_where" not in vars(design)  # nothing was worked out for it
-
-
-def test_json_says_an_answer_once() -> None:
-    plant = SERVO
-    design = symobs.observer(plant, poles=[-10, -10])
-    assert json.loads(design.to_json())["results"][0]["in_convention"] == {"name": "standard"}
-    other = json.loads(str(design.to("json", convention="plusK-plusMC")))["results"][0]["in_convention"]
-    assert other == {"name": "plusK-plusMC", "M": [["-19"], ["-81"]]}
 
 
 def test_options_that_no_page_has_are_refused_with_those_that_it_has() -> None:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import importlib
 import sys
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 import symobs
-from symobs import StateSpace
 from symobs.ground.errors import InputError, UsageError
 from symobs.tasks.result import (
     choose,
@@ -17,8 +16,6 @@ from symobs.tasks.result import (
     formats,
     method,
     registry,
-    task,
-    task_in_time,
     task_named,
     tasks,
     writers,
@@ -112,18 +109,6 @@ def imported() -> set[str]:
     return sys.modules.keys() & MODULES.keys()
 
 
-class Answer:
-    """What a task made for a test returns: the arguments it was called with."""
-
-    def __init__(self, *given: Any) -> None:
-        self.given = given
-        self.asked: dict[str, Any] = {}
-
-    def specified(self, asked: dict[str, Any]) -> Answer:
-        self.asked = asked
-        return self
-
-
 ONE, TWO = {"tasks_of_one.first", "tasks_of_one.more"}, {"tasks_of_two.second"}
 THREE = {"formats_of_three.plain", "formats_of_three.others"}
 
@@ -171,31 +156,3 @@ def test_formats_are_found() -> None:
     assert list(formats()) == ["plain", "odd"]
     with pytest.raises(UsageError, match="'even' is not an output format; use one of odd, plain"):
         format_named("even")
-
-
-def test_tasks_in_time_are_named_where_another_refuses_a_plant() -> None:
-    constant_plant, varying_plant = StateSpace("[0]"), StateSpace("[t]")
-
-    @task
-    def constant(plant: Any, *more: Any, last: Any = 0) -> Any:
-        return Answer(plant, *more, last)
-
-    found = constant(constant_plant, 1, 2, last=3)
-    assert found.given == (constant_plant, 1, 2, 3)
-    assert found.asked == {"last": 3}
-    with pytest.raises(InputError) as caught:
-        constant(varying_plant)
-    assert caught.value.repair == "use fourth, or give a constant that is called t another name"
-
-    @task_in_time
-    def varying(plant: Any) -> Any:
-        return Answer(plant)
-
-    assert varying(varying_plant).given == (varying_plant,)
-    with pytest.raises(InputError, match="use fourth or varying, or"):
-        constant(varying_plant)
-
-
-def test_the_kind_of_a_keyword_is_named_first() -> None:
-    assert registry._kind("Poles | None") == "Poles"
-    assert registry._kind(Annotated[str, "Of", "what is said of it"] | None) == "Of"

@@ -11,17 +11,12 @@ import pytest
 from symobs import StateSpace, compensator, observability, observer, reduced_order_observer
 from symobs.exact import Matrix, Scalar
 from symobs.formula.tree import Environment, Letter
-from symobs.ground.errors import CertificateRejected, DerivationRejected, InputError
+from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation import Define, Derivation
 from symobs.tasks.result import (
     Case,
     Result,
-    formats,
-    registry,
-    task,
-    tasks,
-    writers,
 )
 from tests.kit import SERVO, tabled
 from tests.support.problems.steps import A, F, said
@@ -171,31 +166,3 @@ def test_a_page_is_checked() -> None:
 
 
 # -- registries ---------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def empty(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Take what is registered away again."""
-    tasks(), formats()
-    for name, copy in (("_TASKS", dict), ("_METHODS", dict), ("_FORMATS", dict), ("_IN_TIME", list)):
-        owner = registry if hasattr(registry, name) else writers
-        monkeypatch.setattr(owner, name, copy(getattr(owner, name)))
-
-
-@pytest.mark.usefixtures("empty")
-def test_plants_in_time_are_refused_where_matrices_are_constant() -> None:
-    varying = StateSpace("[0 t; 0 0]", C="[1 0]")
-    with pytest.raises(InputError, match="observer is for plants with constant matrices") as caught:
-        observer(varying, poles=[-1, -2])
-    assert caught.value.where == "plant"
-    assert "time_varying_observability" in caught.value.repair
-
-    def constant(plant: Any) -> Any:
-        return plant
-
-    refusing = task(constant)
-    with pytest.raises(InputError, match="a plant is expected, but a value of type str came"):
-        refusing("a text")
-    with pytest.raises(InputError, match="constant is for plants with constant matrices"):
-        refusing(varying)
-    assert refusing.__name__ == "constant"
