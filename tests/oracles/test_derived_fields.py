@@ -184,7 +184,7 @@ def computed(part: Any, point: Point) -> dict[str, Any]:
         case "feedforward" | "tracking":
             return errors_of(part, point, (A, B, C), s)
         case "stability_region":
-            region_holds(part, point)  # type: ignore[arg-type]
+            region_holds(part, point)
             return {}
         case _:
             return {}

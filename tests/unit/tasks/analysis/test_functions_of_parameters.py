@@ -31,7 +31,7 @@ def test_a_rank_that_drops_where_a_cosine_vanishes_has_a_page() -> None:
 
 
 @tabled
-def test_pages_beside_letters_and_roots(task: str, data: dict[str, str], asked: dict[str, str]) -> None:
+def test_pages_beside_letters_and_roots(task: str, data: dict[str, Any], asked: dict[str, str]) -> None:
     assert getattr(symobs, task)(S(**data), **asked).to("text")
 
 
