@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from symobs.applications.live.frequency_response import margins_said
 from symobs.exact import Scalar
 from symobs.exact.algebraic.polynomial_roots import Factored, factored, roots_of
 from symobs.ground.dataclass import dataclass
@@ -52,7 +53,7 @@ def sentence(result: Result, stable: Stability, printer: CardPrinter) -> str:
         ends = {
             name: printer.language.decimal(str(result.fields[name])) for name in ("gain_down", "gain_up", "phase_deg")
         }
-        fact = said["said_margins"].format(**{name: text.replace("oo", "∞") for name, text in ends.items()})
+        fact = margins_said(said["said_margins"], {name: text.replace("oo", "∞") for name, text in ends.items()})
     elif stable.known and (not is_no or result.task in _ABOUT_STABILITY):
         fact = stable.told(printer)
     elif result.task == "stability_region" and not is_no:
