@@ -9,8 +9,13 @@ factor over the field each, once a shift of one variable by the roots has made t
 
 from __future__ import annotations
 
-from functools import reduce
-from typing import TYPE_CHECKING
+import itertools
+from fractions import Fraction
+from functools import lru_cache, reduce
+from math import lcm, prod
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from flint import fmpz, fmpz_mat, fmpz_mod_mpoly_ctx
 
 from symobs.exact.core.ring import factors_of, in_order
 
@@ -59,23 +64,106 @@ def quotient(field: Field, dividend: fmpz_mpoly, divisor: fmpz_mpoly) -> fmpz_mp
 
 
 def common_divisor(field: Field, left: fmpz_mpoly, right: fmpz_mpoly) -> fmpz_mpoly:
-    """Return the scaled greatest common divisor, by primitive remainders."""
+    """Return the scaled greatest common divisor.
+
+    Of polynomials over Q it is that over Q.  Else it is found modulo a prime at which the roots are integers, and its
+    numbers are the shortest with these residues.  Where the leading coefficient of `left` does not vanish there, the degree
+    is not less than the true one, so that what divides both polynomials is the greatest.
+    """
     if not left or not right:
         return scaled(field, left or right)
-    here, there = variables_of(field, left), variables_of(field, right)
-    if not here or not there or field.norm(left).gcd(field.norm(right)).is_constant():
+    if not any(polynomial.degrees()[index] for polynomial in (left, right) for index, _ in field.roots):
+        return scaled(field, left.gcd(right))
+    if not variables_of(field, left) or not variables_of(field, right):
         return field.one
-    index = next((k for k in here if k in there), None)
-    if index is None:
-        return common_divisor(field, _content(field, left, here[0]), right)
-    contents = _content(field, left, index), _content(field, right, index)
-    left, right = quotient(field, left, contents[0]), quotient(field, right, contents[1])
-    if left.degrees()[index] < right.degrees()[index]:
-        left, right = right, left
-    while right and right.degrees()[index] > 0:
-        left, right = right, _primitive(field, _remainder(field, left, right, index), index)
-    primitive = left if not right else field.one
-    return scaled(field, field.normal(primitive * common_divisor(field, *contents)))
+    bits = _FIRST_BITS
+    while True:
+        found = _divisor_modulo(field, left, right, _residues(field, bits))
+        if found and (found.is_one() or all(_divides(field, found, polynomial) for polynomial in (left, right))):
+            return found
+        bits *= 2
+
+
+#: The bits of the prime that is tried first.
+_FIRST_BITS = 128
+
+
+class _Residues(NamedTuple):
+    """A prime, and by the powers of the roots the residues of their products."""
+
+    prime: int
+    products: dict[tuple[int, ...], int]
+
+
+@lru_cache(maxsize=64)
+def _residues(field: Field, bits: int) -> _Residues:
+    """Return a prime of so many bits modulo which the squares of all roots have roots."""
+    prime, squares = 1 << bits | 1, [fmpz(square) for _, square in field.roots]
+    while not (fmpz(prime).is_prime() and all(square.jacobi(prime) == 1 for square in squares)):
+        prime += 2
+    roots = [int(square.sqrtmod(prime)) for square in squares]
+    powers = itertools.product((0, 1), repeat=len(roots))
+    return _Residues(prime, {p: prod(r for r, power in zip(roots, p, strict=True) if power) % prime for p in powers})
+
+
+def _divisor_modulo(field: Field, left: fmpz_mpoly, right: fmpz_mpoly, residues: _Residues) -> fmpz_mpoly:
+    """Return the divisor modulo a prime in numbers of the field, 0 where a leading coefficient vanishes."""
+    context = fmpz_mod_mpoly_ctx.get(field.names, modulus=residues.prime, ordering=field.context.ordering())
+    places = [index for index, _ in field.roots]
+    one, other = (_image(context, places, polynomial, residues) for polynomial in (left, right))
+    if not one or max(one.monoms()) != max(_without(powers, places) for powers in left.monoms()):
+        return field.zero
+    terms = one.gcd(other).to_dict()
+    over = pow(int(terms[max(terms)]), -1, residues.prime)
+    found: dict[tuple[int, ...], Fraction] = {}
+    for powers, residue in terms.items():
+        for kinds, number in _number(int(residue) * over % residues.prime, residues).items():
+            with_roots = list(powers)
+            for place, power in zip(places, kinds, strict=True):
+                with_roots[place] = power
+            found[tuple(with_roots)] = number
+    below = lcm(*(number.denominator for number in found.values()))
+    return scaled(field, field.context.from_dict({powers: int(number * below) for powers, number in found.items()}))
+
+
+def _image(context: fmpz_mod_mpoly_ctx, places: list[int], polynomial: fmpz_mpoly, residues: _Residues) -> Any:
+    """Return a polynomial modulo a prime, its roots replaced by their residues."""
+    found: dict[tuple[int, ...], int] = {}
+    for powers, c in polynomial.terms():
+        rest, kinds = _without(powers, places), tuple(int(powers[place]) for place in places)
+        found[rest] = (found.get(rest, 0) + int(c) * residues.products[kinds]) % residues.prime
+    return context.from_dict(found)
+
+
+def _without(powers: tuple[int, ...], places: list[int]) -> tuple[int, ...]:
+    return tuple(0 if k in places else int(power) for k, power in enumerate(powers))
+
+
+def _number(residue: int, residues: _Residues) -> dict[tuple[int, ...], Fraction]:
+    """Return the number with a residue whose numerators and denominator are short, by the powers of the roots in it.
+
+    The vectors (a, b, …, q) with a + b √2 + … = q c modulo the prime are a lattice; the shortest one is taken.
+    """
+    (_, first), *others = residues.products.items()
+    assert first == 1  # noqa: S101 - the product without roots comes first
+    size = len(others) + 2
+    rows = [[residues.prime] + [0] * (size - 1)]
+    rows += [[-r, *(int(k == j) for k in range(len(others))), 0] for j, (_, r) in enumerate(others)]
+    rows += [[residue] + [0] * (size - 2) + [1]]
+    shortest = min(
+        (row for row in fmpz_mat(rows).lll().tolist() if int(row[-1])),
+        key=lambda row: sum(int(part) ** 2 for part in row),
+    )
+    return {
+        kinds: Fraction(int(a), int(shortest[-1]))
+        for kinds, a in zip(residues.products, shortest[:-1], strict=True)
+        if int(a)
+    }
+
+
+def _divides(field: Field, divisor: fmpz_mpoly, polynomial: fmpz_mpoly) -> bool:
+    above, below = field.rationalised(polynomial, divisor)
+    return not divmod(above, below.primitive()[1])[1]
 
 
 def _coefficients(field: Field, polynomial: fmpz_mpoly, index: int) -> list[fmpz_mpoly]:
@@ -89,20 +177,6 @@ def _coefficients(field: Field, polynomial: fmpz_mpoly, index: int) -> list[fmpz
 
 def _content(field: Field, polynomial: fmpz_mpoly, index: int) -> fmpz_mpoly:
     return reduce(lambda a, b: common_divisor(field, a, b), _coefficients(field, polynomial, index), field.zero)
-
-
-def _primitive(field: Field, polynomial: fmpz_mpoly, index: int) -> fmpz_mpoly:
-    return quotient(field, polynomial, _content(field, polynomial, index)) if polynomial else polynomial
-
-
-def _remainder(field: Field, left: fmpz_mpoly, right: fmpz_mpoly, index: int) -> fmpz_mpoly:
-    """Return the remainder of a pseudo-division in one generator."""
-    generator, degree = field.context.gen(index), right.degrees()[index]
-    lead = _coefficients(field, right, index)[0]
-    while left and (excess := left.degrees()[index] - degree) >= 0:
-        top = _coefficients(field, left, index)[0]
-        left = field.normal(lead * left - top * right * generator ** int(excess))
-    return left
 
 
 def lowest_terms(field: Field, numerator: fmpz_mpoly, denominator: fmpz_mpoly) -> tuple[fmpz_mpoly, fmpz_mpoly]:

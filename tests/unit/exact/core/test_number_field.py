@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 import sympy
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Ideal, Scalar, product_of
 from symobs.exact.algebraic.rounded_decimals import root_in_field
 from symobs.exact.core.generators import square_root
 from symobs.exact.core.modular import Point, VanishingDenominator
+from symobs.exact.core.number_field import common_divisor
 from symobs.exact.sympy_bridge.conversion import scalar_to_sympy
 
 if TYPE_CHECKING:
@@ -124,3 +125,25 @@ def test_a_point_keeps_the_squares() -> None:
         assert (two * two % point.prime, three * three % point.prime) == (2, 3)
         assert point.scalar((1 + R2) * (R3 - 1)) == (1 + two) * (three - 1) % point.prime
     assert 0 < seen < 40
+
+
+_SMALL = st.integers(-3, 3)
+_TERMS = st.lists(st.tuples(_SMALL, _SMALL, _SMALL, st.integers(0, 2), st.integers(0, 1)), min_size=1, max_size=2)
+
+
+@settings(max_examples=40)
+@example(([(1, 0, 0, 1, 0)], [(2, 0, 0, 0, 1)], [(1, 0, 0, 1, 0), (2, 0, 0, 0, 0)]))
+@given(st.tuples(_TERMS, _TERMS, _TERMS))
+def test_the_greatest_common_divisor_is_that_of_sympy(drawn: tuple[list[tuple[int, int, int, int, int]], ...]) -> None:
+    field = (R2 * R3 * x * k).field
+    factors = [sum(((a + b * R2 + c * R3) * x**i * k**j for a, b, c, i, j in terms), Scalar.of(0)) for terms in drawn]
+    values = [factor * factors[2] for factor in factors[:2]]
+    if all(values):
+        ours = Scalar(
+            field, common_divisor(field, *(value.within(field).numerator_part for value in values)), field.one
+        )
+        extension = [sympy.sqrt(2), sympy.sqrt(3)]
+        one, other, found = (
+            sympy.Poly(scalar_to_sympy(value), *sympy.symbols("x k"), extension=extension) for value in (*values, ours)
+        )
+        assert found.monic() == sympy.gcd(one, other).monic()
