@@ -366,6 +366,14 @@ def test_a_task_is_one_new_folder_and_an_example(copy: Copy) -> None:
         assert words in page.out
     sheet = copy.run("sheet", example, "--questions", "--format", "text")
     assert "What stands on the diagonal of A?" in sheet.out
+    problem = {"task": "trace", "plant": {"A": "[0 1; 0 -1]", "C": "[1 0]"}}
+    request = {"schema": "symobs-live/1", "id": 1, "want": "answer", "problem": problem}
+    asked = f"import symobs, json; print(json.dumps(symobs.live.answer({request})))"
+    run = subprocess.run(
+        [sys.executable, "-c", asked], cwd=copy.folder, env=environment(copy.checkout), capture_output=True, check=True
+    )
+    answer = json.loads(run.stdout)
+    assert (answer["status"], answer["says"]) == ("done", "Trace found")
 
 
 def test_a_format_is_one_new_file(copy: Copy) -> None:

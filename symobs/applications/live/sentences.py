@@ -61,7 +61,7 @@ def sentence(result: Result, stable: Stability, printer: CardPrinter) -> str:
     elif is_no and result.task in _NEGATIVES:
         fact = said[f"said_{_NEGATIVES[result.task]}"]
     else:
-        task = said[f"live_task_{result.task}"]
+        task = said.get(f"live_task_{result.task}", result.task.replace("_", " "))
         fact = (
             said["said_none"].format(task=task)
             if is_no

@@ -137,3 +137,12 @@ def test_a_line_with_the_inverse_of_zero_is_no_fault_of_ours() -> None:
 def test_a_property_answers_whether_it_holds(task: str, answer: str, verdict: str) -> None:
     seen = problem(task, 'A = "[0 1; 0 -1]"\nC = "[0 1]"', "verdict")  # 0 is not seen
     assert verdicts(seen, answer) == {"verdict": verdict}
+
+
+@pytest.mark.parametrize("letter", ["chi", "chi_A(s)", "p(s)", "P"])
+def test_an_answer_under_a_letter_of_its_own_is_no_unreadable_line(letter: str) -> None:
+    checked = Checked.of('task = "characteristic_polynomial"\n[plant]\nA = "[1 2; 3 4]"\n')
+    for value, verdict in (("s^2 - 5 s - 2", "right"), ("s^2 - 5 s - 3", "wrong")):
+        report = checked.report(f"{letter} = {value}\nq = 3")
+        assert report.parts[0].verdict == verdict
+        assert [line.relation for line in report.lines] == ["q = 3"]
