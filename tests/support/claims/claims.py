@@ -365,6 +365,7 @@ def rank_holds(result: Result, at: Setting) -> None:
     found = matrix_at(result.fields["matrix"], at.point)
     assert (transposed(found) if dual else found) == rows
     assert rank_of(rows) == result.fields["rank"]
+    assert (result.verdict == "no") == (rank_of(rows) < len(A))
     kernel = [[value_at(entry, at.point) for entry in vector] for vector in result.fields["kernel"]]
     assert rank_of(kernel) == len(kernel) == len(A) - result.fields["rank"]
     assert not kernel or not any(any(row) for row in multiply(rows, transposed(kernel)))

@@ -30,6 +30,8 @@ def modes_hold(result: Any, at: Setting) -> None:
     A, C = at.pair(dual=result.kind == "controllability")
     variable, order = result.plant.variable, len(A)
     assert coefficients_at(result.fields["fixed_polynomial"], variable, at.point) == hidden(A, C)
+    if result.task == "pbh":
+        assert (result.verdict == "no") == (len(hidden(A, C)) > 1)
     modes = result.fields["modes"]
     assert len(modes) == order
     seen = "observable" if result.kind == "observability" else "controllable"
@@ -52,6 +54,7 @@ def detectability_holds(result: Any, at: Setting) -> None:
         return  # decided by hand in `test_modes`
     if result.hidden.verdict in {"yes", "no"}:
         assert stable == (result.hidden.verdict == "yes")
+        assert stable or result.verdict != "yes"
     else:
         assert stable == all(value_at(c.expression, at.point) > 0 for c in result.hidden.where)
 
