@@ -151,7 +151,7 @@ class Data:
         """What was typed, in plain fractions; where it is a polynomial, the plant that has it."""
         point = {name: number(value) for name, value in self.numbers.items()}
         pairs = zip("ABCD", (self.A, self.B, self.C, self.D), strict=True)
-        tables = [
+        A, B, C, D = [
             matrix_at(getattr(plant.matrices, name), point)
             if own is None
             else [list(map(number, row)) for row in own.tolist()]
@@ -160,8 +160,8 @@ class Data:
         stems = [s for s in ("", "control_", "observer_") if {f"{s}poles", f"{s}polynomial"} & self.given.keys()]
         asked = {stem: [number(c) for c in self.polynomial(stem).all_coeffs()] for stem in stems}
         if self.row["task"] == "stability_region" and self.A is None:
-            assert characteristic(tables[0]) == [c / asked[""][0] for c in asked[""]]
-        return Setting(*tables, asked, point, self.discrete)
+            assert characteristic(A) == [c / asked[""][0] for c in asked[""]]
+        return Setting(A, B, C, D, asked, point, self.discrete)
 
     def holds(self, result: Any) -> None:
         """Hold what the answer claims to the data: a region at points of a grid, functions of time at an instant."""

@@ -14,9 +14,7 @@ import sympy
 from click.testing import CliRunner
 
 from symobs.cli import cli
-from symobs.exact import Matrix
 from symobs.formula.expression import parse_matrix, parse_scalar
-from symobs.formula.tree import Block, Literal
 from symobs.problem.expect import mismatches
 from symobs.tasks.result import formats, render
 from tests.support.examples import EXAMPLES as FILES
@@ -282,6 +280,10 @@ def is_member(viewed: ResultInConvention, place: str, expect: Mapping[str, Any])
     return bool(sympy.expand(found - part.polynomial) == 0)
 
 
+def rows(*entries: list[Any]) -> Any:
+    return sympy.ImmutableMatrix(list(entries))
+
+
 def part_with(result: Any, letter: str) -> Any:
     """Return the design that a gain belongs to."""
     if result.task != "compensator":
@@ -301,75 +303,3 @@ def test_a_spoiled_file_exits_with_4(tmp_path: Path) -> None:
 
 def test_each_format_is_rendered_here() -> None:
     assert set(formats()) >= {"latex", "fragment", "text", "json"}
-
-
-# -- the pages of the source's examples --------------------------------------------------------------------------------
-
-s = sympy.Symbol("s")
-
-
-def values_in_order(item: object) -> Iterator[Any]:
-    """Yield every value written out in a derivation, in reading order, as SymPy objects."""
-    if isinstance(item, Literal):
-        value = item.value
-        if isinstance(value, Matrix):
-            yield sympy.ImmutableMatrix(*value.shape, [sympy_scalar(entry, {}) for entry in value.entries])
-        else:
-            yield sympy.together(sympy_scalar(value, {}))
-    elif isinstance(item, (tuple, list)):
-        for part in item:
-            yield from values_in_order(part)
-    elif isinstance(item, Block) and all(isinstance(part, Literal) for row in item.rows for part in row):
-        parts: Any = item.rows
-        yield from values_in_order(Literal(Matrix.block([[part.value for part in row] for row in parts])))
-    elif hasattr(item, "__dataclass_fields__"):
-        # A sentence stands before the display it belongs to.
-        for name in sorted(item.__dataclass_fields__, key=lambda name: name not in {"sentence", "title"}):
-            yield from values_in_order(getattr(item, name))
-
-
-def rows(*entries: list[Any]) -> Any:
-    return sympy.ImmutableMatrix(list(entries))
-
-
-EXAMPLE_4_1 = [
-    rows([1, 0], [0, 1]),  # 𝒞 of (Aᵀ, Cᵀ)
-    s**2 + 20 * s + 100,
-    s**2 + s,
-    rows([1, 1], [1, 0]),
-    rows([0, 1], [1, -1]),
-    rows([100, 19]),
-    rows([19, 81]),
-    rows([19], [81]),
-    rows([-19, 1], [-81, -1]),
-    rows([0], [1]),
-    rows([19], [81]),
-]
-EXAMPLE_4_2 = [
-    s**2 + 4 * s + 4,
-    rows([4, 3]),
-    rows([19], [81]),
-    rows([-19, 1], [-85, -4]),
-    rows([s + 19, -1], [85, s + 4]),
-    s**2 + 23 * s + 161,
-    rows([s + 4, 1], [-85, s + 19]),
-    rows([19 * s + 157], [81 * s - 76]),
-    (319 * s + 400) / (s**2 + 23 * s + 161),
-    rows([0, 1, 0, 0], [-4, -4, 4, 3], [0, 0, -19, 1], [0, 0, -81, -1]),
-    rows([0, 1, 0, 0], [0, -1, -4, -3], [19, 0, -19, 1], [81, 0, -85, -4]),
-    s**2 + 23 * s + 161,
-    s**4 + 24 * s**3 + 184 * s**2 + 480 * s + 400,
-]
-
-
-@pytest.mark.parametrize(("stem", "wanted"), [("servo_observer", EXAMPLE_4_1), ("output_feedback_servo", EXAMPLE_4_2)])
-def test_values_stand_on_the_page_in_the_order_of_the_source(stem: str, wanted: list[Any]) -> None:
-    path = next(path for path in FILES if path.stem == stem)
-    (result,) = solved(path)[1]
-    shown = values_in_order(result.derivation.steps)
-    for value in wanted:
-        assert any(other == value or sympy.expand(other - value) == 0 for other in shown if alike(other, value)), value
-
-
-def alike(left: Any, right: Any) -> bool:
-    return getattr(left, "shape", None) == getattr(right, "shape", None)

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 from symobs.cli.commands import solve
@@ -20,6 +18,9 @@ from symobs.tasks.result import tasks
 from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import EXAMPLES, SAFETY, SERVO, environment, inside
+
+if TYPE_CHECKING:
+    import pytest
 
 PLANT = '[plant]\nA = "[0 1; 0 -1]"\nB = "[0; 1]"\nC = "[1 0]"\n'
 OBSERVER = f'task = "observer"\n{PLANT}[specification]\npoles = [-10, -10]\n'
@@ -75,28 +76,6 @@ def test_what_may_have_been_meant_is_said(arguments: list[str], said: str, tmp_p
     assert said in run.err
 
 
-# -- files that cannot be read --------------------------------------------------------------------------------------
-
-
-def test_files_that_cannot_be_read_are_3(tmp_path: Path) -> None:
-    binary, wide, empty = tmp_path / "binary", tmp_path / "wide.toml", tmp_path / "empty.toml"
-    binary.write_bytes(bytes(range(256)))
-    wide.write_text(OBSERVER, encoding="utf-16")
-    empty.touch()
-    for name, words in {
-        ".": ".: Is a directory",
-        "missing.toml": "missing.toml: No such file or directory; give the path",
-        "a\0b": "null",
-        "binary": "binary: byte 128 is not UTF-8; save the file as UTF-8 text",
-        "wide.toml": "wide.toml: byte 0 is not UTF-8",
-        "empty.toml": "no task is named",
-    }.items():
-        run = inside("solve", name, folder=tmp_path)
-        assert (run.code, run.out) == (3, ""), name
-        assert words in run.err
-    assert inside("solve", "-").code == 3
-
-
 # -- where the result goes ------------------------------------------------------------------------------------------
 
 
@@ -142,15 +121,6 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyte
     assert target.stat().st_mode & 0o777 == 0o600
 
 
-@pytest.mark.parametrize("target", ["missing/page.tex", "."])
-def test_what_cannot_be_written_is_said(target: str, tmp_path: Path) -> None:
-    run = inside("solve", str(SERVO), "--format", "latex", "-o", target, folder=tmp_path)
-    assert (run.code, run.out) == (3, "")
-    assert run.err.startswith(f"{target}: ")
-    assert "name a file in a folder that can be written" in run.err
-    assert not any(tmp_path.iterdir())
-
-
 def writing_to(stdout: int, *arguments: str) -> tuple[int, str]:
     """Exit code and messages of a run whose standard output is this file descriptor."""
     command = [sys.executable, "-m", "symobs", *arguments]
@@ -158,14 +128,6 @@ def writing_to(stdout: int, *arguments: str) -> tuple[int, str]:
         command, env=environment(), stdout=stdout, stderr=subprocess.PIPE, text=True, timeout=SAFETY, check=False
     )
     return run.returncode, run.stderr
-
-
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
-def test_a_full_disk_is_said() -> None:
-    with Path("/dev/full").open("wb") as full:
-        code, said = writing_to(full.fileno(), "solve", str(SERVO))
-    assert code == 3
-    assert said.startswith("standard output: No space left on device; ")
 
 
 # -- ends that come early -------------------------------------------------------------------------------------------
@@ -179,33 +141,6 @@ def test_a_reader_may_stop_reading(arguments: list[str]) -> None:
         assert writing_to(writing, *arguments) == (0, "")
     finally:
         os.close(writing)
-
-
-INTERRUPTIBLE = """
-import runpy, signal, sys
-signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs begin with it ignored
-sys.argv[0] = "symobs"
-runpy.run_module("symobs", run_name="__main__", alter_sys=True)
-"""
-
-
-def test_ctrl_c_is_130() -> None:
-    with subprocess.Popen(
-        [sys.executable, "-c", INTERRUPTIBLE, "solve", "-"],
-        env=environment(),
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    ) as process:
-        assert process.stdin is not None
-        process.stdin.write(b"#" * 200_000)  # more than a pipe holds: returns once the file is being read
-        process.stdin.flush()
-        process.send_signal(signal.SIGINT)
-        try:
-            out, err = process.communicate(timeout=SAFETY)  # the end of the file wakes a reader that missed the signal
-        finally:
-            process.kill()
-    assert (process.returncode, out, err) == (130, b"", b"interrupted\n")
 
 
 # -- one command a task ---------------------------------------------------------------------------------------------

@@ -5,8 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-import shutil
-import subprocess
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -79,36 +77,6 @@ def test_variants_of_the_examples(name: str) -> None:
     longest = max(map(len, numbers_of_page(variants[3].text)))
     assert longest <= variants.table.constraints.get("page", {}).get("digits", 99)
     assert longest <= variants[3].profile["peak"]
-    _gains_by_pari([each for each in variants if "integer" in variants.table.constraints])
-
-
-def _gains_by_pari(variants: list[Any]) -> None:
-    """Let PARI find K and L by Ackermann's formula, in rational numbers, and see that they are these and whole."""
-    if not variants or shutil.which("gp") is None:
-        return
-    lines = [
-        "stack(A, C) = {my(M = C, R = C); for(i = 2, #A, R = R * A; M = matconcat([M; R])); M};",
-        "phi(A, p) = {my(M = matid(#A)); for(i = 1, #p, M = M * (A - p[i] * matid(#A))); M};",
-        "obs(A, C, p) = phi(A, p) * stack(A, C)^-1 * matid(#A)[, #A];",
-        "fit(X, Y) = print(X == Mat(Y) && denominator(X) == 1);",
-    ]
-    for each in variants:
-        plant, asked = each.data["plant"], each.data["specification"]
-        A, B, C = (_of_pari(plant[name]) for name in "ABC")
-        if "L" in each.expect:
-            poles = asked.get("observer_poles", asked.get("poles"))
-            lines.append(f"fit(Mat(obs({A}, {C}, [{poles}])), {_of_pari(each.expect['L'])});")
-        if "K" in each.expect:
-            poles = asked.get("control_poles", asked.get("poles"))
-            lines.append(f"fit(Mat(obs({A}~, {B}~, [{poles}]))~, {_of_pari(each.expect['K'])});")
-    run_of = subprocess.run(
-        ["gp", "-q"], input="\n".join(lines), capture_output=True, text=True, check=True, timeout=60
-    )
-    assert run_of.stdout.split() == ["1"] * (len(lines) - 4)
-
-
-def _of_pari(rows: str) -> str:
-    return "[" + "; ".join(", ".join(row.split()) for row in rows.strip("[]").split(";")) + "]"
 
 
 # -- what is distinct -------------------------------------------------------------------------------------------------
