@@ -8,7 +8,6 @@ either no gain exists or a case of the result says why one survives, and that ca
 from __future__ import annotations
 
 from dataclasses import replace
-from fractions import Fraction
 from functools import cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
@@ -20,10 +19,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named, symbols_in
 from symobs.problem import Problem, read
 from symobs.system.conditions import never_zero
-from tests.kit import text_of
 from tests.support.algebra import (
-    assignable,
-    at_number,
     has_sign,
     matrix_at,
     observability_rows,
@@ -39,6 +35,7 @@ from tests.support.examples import problem_of, results_of
 from tests.support.sampling import FULL, every
 
 if TYPE_CHECKING:
+    from fractions import Fraction
     from collections.abc import Iterator
 
     from symobs.tasks.result import Result
@@ -277,36 +274,6 @@ def test_there_are_strata_among_the_examples() -> None:
     tasks = {"observer", "compensator"}
     assert verdicts >= {*((task, verdict) for task in tasks for verdict in ("yes", "no")), ("observability", "no")}
     assert sum(bool(names_of(*solved(name))) for name in FILES) >= 8
-
-
-# -- A = [0 1; −2 −3], C = [1 c]: at c = 1 the mode −1 is not observable, at c = 1/2 the mode −2 -----------------------
-
-
-@pytest.mark.parametrize(("poles", "survivors"), [([-1, -5], {1}), ([-1, -2], {1, Fraction(1, 2)})])
-def test_which_gains_survive_the_loss_of_observability(poles: list[int], survivors: set[Fraction]) -> None:
-    plant = symobs.StateSpace("[0 1; -2 -3]", None, "[1 c]")
-    result = symobs.observer(plant, poles=poles)
-    cases = {case.substitution["c"].fraction(): case.result for case in result.case_tree}
-    assert set(cases) == {1, Fraction(1, 2)}
-    for c, mode in ((Fraction(1), -1), (Fraction(1, 2), -2)):
-        at, found = Setting.of(plant, {"poles": poles}, {"c": c}), cases[c]
-        # PBH: the mode is an eigenvalue of A with an eigenvector that the output does not see
-        pencil = [[entry - (mode if i == j else 0) for j, entry in enumerate(row)] for i, row in enumerate(at.A)]
-        assert rank_of(pencil) == rank_of([*pencil, *at.C]) == 1
-        assert (
-            (at_number(at.wanted[""], Fraction(mode)) == 0) == assignable(at.A, at.C, at.wanted[""]) == (c in survivors)
-        )
-        assert found is not None
-        assert found.verdict == ("yes" if c in survivors else "no")
-        assert [str(root) for root in found.fields["fixed_modes"]] == [str(mode)]
-        HOLDS["observer"](found, at)
-    page = text_of(result)
-    for where, mode in (("c = 1", -1), ("c = 1/2", -2)):
-        assert f"{where} │ {mode} │ {'this L, among others' if mode in poles else 'none'}" in page
-    if -2 not in poles:  # the factor c − 1 of det 𝒪 cancelled from the gain, which therefore survives at c = 1
-        assert matrix_at(result.answer["L"], {"c": Fraction(1)}) == [[-3], [6]]
-        with pytest.raises(ZeroDivisionError):
-            matrix_at(result.answer["L"], {"c": Fraction(1, 2)})
 
 
 # -- what generic answers must not hide --------------------------------------------------------------------------------

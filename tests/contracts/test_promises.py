@@ -302,47 +302,7 @@ def test_a_gramian_exists_where_what_grows_is_not_moved() -> None:
     assert all(abs(float(W[i, j]) - numbers[i][j]) < 1e-12 for i in range(2) for j in range(2))
 
 
-@pytest.mark.parametrize(
-    "problem",
-    [
-        {  # a fixed mode among the desired poles, on a curve of another degree: a fraction that is a polynomial there
-            "task": "observer",
-            "symbols": {"a": "nonzero", "b": "nonnegative"},
-            "plant": {"A": "[b^2 0; 0 2*a-b]", "C": "[-3 0]"},
-            "specification": {"polynomial": "s^2 + 9 s + 7"},
-        },
-        {
-            "task": "gramian",
-            "symbols": {"d": "positive"},
-            "plant": {"A": "[-2 -3; -1 2]", "B": "[3; d]"},
-            "specification": {"of": "controllability", "horizon": "inf"},
-        },
-        {  # entries of a gain with several rows and columns are given names
-            "task": "compensator",
-            "symbols": {"a": "nonnegative", "b": "real", "p": "positive"},
-            "plant": {"A": "[a-1 a+b; 0 -a]", "B": "[-a -1; a+b 0]", "C": "[1 -1]"},
-            "specification": {"control_poles": "b-1, -p", "observer_poles": "-p, -b"},
-        },
-        {  # a fixed mode on a curve, written as a fraction that is the root there
-            "task": "state_feedback",
-            "symbols": {"a": "real", "b": "real", "p": "positive"},
-            "plant": {"A": "[2 -a -2; 0 a^2 a^2; 0 0 2]", "B": "[a-1; 1; a-b]"},
-            "specification": {"poles": "-a, b-1, -p"},
-        },
-        {  # a law that is solved for u, with letters for the coefficients of F
-            "task": "compensator",
-            "symbols": {"a": "positive", "b": "negative", "c": "negative"},
-            "plant": {"A": "[1 3; a-b c-b]", "B": "[-3; 3]", "C": "[2 3/4]", "D": "[2]"},
-            "specification": {"control_poles": "-5, -1", "observer_poles": "-4", "observer": "minimal"},
-        },
-        {  # the same without direct term of the plant, of third order and in discrete time
-            "task": "compensator",
-            "symbols": {"a": "negative", "b": "positive"},
-            "plant": {"A": "[1 -b 0; 0 a*b b; 0 0 a]", "B": "[-2; -a; 1]", "C": "[-2 0 a]", "dt": True},
-            "specification": {"control_poles": "-a, 0, 0", "observer_poles": "0, 1/2", "observer": "minimal"},
-        },
-    ],
-)
+@tabled
 def test_pages_of_such_problems_can_be_written(problem: dict[str, Any]) -> None:
     (result,) = read(json.dumps(problem)).solve()
     assert result.to("latex")

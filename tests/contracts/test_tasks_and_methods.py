@@ -31,7 +31,6 @@ from tests.support.claims.asking import (
     UNASKED,
     WEIGHTED,
     factors,
-    fewer,
     is_for,
     specification,
 )
@@ -295,16 +294,6 @@ def test_attributes_are_sympy_objects_and_never_of_the_kernel(name: str) -> None
             assert isinstance(part, sympy.ImmutableMatrix)
         with pytest.raises(AttributeError, match="has no attribute 'missing'"):
             _ = result.missing
-
-
-@pytest.mark.parametrize("name", sorted(methods()))
-def test_gains_have_the_shapes_of_the_convention(name: str) -> None:
-    result = example(name)
-    plant = result.plant
-    order = plant.order - max(fewer(name, prefix) for prefix in ("", "observer_"))
-    shapes = {"K": (plant.inputs, plant.order), "L": (order, plant.outputs)}
-    for letter in letters(result):
-        assert getattr(result, letter).shape == shapes[letter]
 
 
 # -- random plants --------------------------------------------------------------------------------------

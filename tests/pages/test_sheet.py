@@ -307,16 +307,6 @@ def test_a_sheet_is_typeset_without_a_fault(folder: Path, require_tool: RequireT
     assert pages > 5
 
 
-def test_the_pdf_of_a_sheet(folder: Path, require_tool: RequireTool) -> None:
-    require_tool("pdflatex")
-    run = inside("sheet", "good.toml", "met.toml", "-o", "sheet.pdf", "--title", "On paper", folder=folder)
-    assert (run.code, run.err) == (0, "")
-    command = [require_tool("pdftotext"), "-layout", "sheet.pdf", "-"]
-    words = subprocess.run(command, cwd=folder, capture_output=True, check=True).stdout.decode()
-    for text in ("On paper", "Questions", "1. Good & well", "Find the characteristic polynomial of A", "\fSolutions"):
-        assert text in words
-
-
 def test_tex_has_more_time_for_a_longer_sheet(monkeypatch: pytest.MonkeyPatch) -> None:
     limits: list[float] = []
 

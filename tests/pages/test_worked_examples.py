@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import pytest
 import sympy
-from click.testing import CliRunner
 
-from symobs.cli import cli
 from symobs.formula.expression import parse_matrix, parse_scalar
 from symobs.problem.expect import mismatches
 from symobs.tasks.result import formats, render
@@ -90,22 +86,6 @@ def test_meets_its_expectations(path: Path) -> None:
     assert mismatches(found.viewed(results), found.expect) == []
 
 
-@pytest.mark.parametrize("path", every(3, FILES), ids=lambda path: path.stem)
-def test_the_command_line_gives_the_same_answers(path: Path, tmp_path: Path) -> None:
-    ran = CliRunner().invoke(cli, ["solve", str(path), "--format", "json", "-o", str(tmp_path / "answers.json")])
-    assert ran.exit_code == 0, ran.output
-    assert ran.output == ""
-    answers = (tmp_path / "answers.json").read_text("utf-8")
-    assert json.loads(answers) == json.loads(render(document_of(path.stem), "json"))
-
-
-def test_the_command_itself() -> None:
-    path = next(path for path in FILES if path.stem == "output_feedback_servo")
-    ran = subprocess.run([sys.executable, "-m", "symobs", "solve", str(path)], capture_output=True, check=True)
-    assert ran.stdout.decode().startswith(r"\documentclass")
-    assert ran.stderr == b""
-
-
 @pytest.mark.parametrize(
     ("path", "name"),
     [(path, "latex") for path in FILES] + every(4, product(FILES, ["fragment", "text", "json"])),
@@ -125,13 +105,6 @@ def test_renders(path: Path, name: str) -> None:
     assert "│ =" not in page, "a left side is not an answer"
     for result in results:
         assert result.derivation.check() is not None
-
-
-@pytest.mark.parametrize("path", every(8, FILES, 3), ids=lambda path: path.stem)
-def test_the_same_file_gives_the_same_page(path: Path) -> None:
-    found = problem_of(path.stem)
-    again, first = found.document(found.solve()), document_of(path.stem)
-    assert all(render(again, name) == render(first, name) for name in ("latex", "text"))
 
 
 def test_boxes_of_a_drawing_hold_fractions() -> None:
@@ -289,16 +262,6 @@ def part_with(result: Any, letter: str) -> Any:
     if result.task != "compensator":
         return result
     return result.feedback if letter == "K" else result.estimator
-
-
-def test_a_spoiled_file_exits_with_4(tmp_path: Path) -> None:
-    path = next(path for path in FILES if path.stem == "servo_observer")
-    text = path.read_text("utf-8")
-    wrong = tmp_path / "wrong.toml"
-    wrong.write_text(text.replace('L = "[19; 81]"', 'L = "[19; 82]"'), "utf-8")
-    ran = CliRunner().invoke(cli, ["solve", str(wrong), "--format", "text"])
-    assert ran.exit_code == 4
-    assert "expect.L: expected [19; 82], found [19; 81]" in ran.stderr
 
 
 def test_each_format_is_rendered_here() -> None:
