@@ -35,8 +35,8 @@ from tests.support.examples import problem_of, results_of
 from tests.support.sampling import FULL, every
 
 if TYPE_CHECKING:
-    from fractions import Fraction
     from collections.abc import Iterator
+    from fractions import Fraction
 
     from symobs.tasks.result import Result
 
