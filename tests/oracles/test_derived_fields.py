@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+import symobs
 from symobs.exact import Factored, Matrix, Root, Scalar
 from symobs.exact.core.generators import function_named, symbols_in
 from symobs.formula.expression import parse_scalar
@@ -235,6 +236,13 @@ def test_a_transfer_function_is_made_of_its_poles_and_zeros(name: str) -> None:
         }
         assert len(ratios) == 1
         assert len(part.fields["poles"]) == P.denominator.degree(part.plant.variable)
+
+
+@pytest.mark.parametrize(("C", "said"), [("[c d]", ["c != 0"]), ("[c*d-1 d]", ["c*d - 1 != 0"]), ("[1 d]", [])])
+def test_integral_action_is_possible_where_no_zero_is_at_rest(C: str, said: list[str]) -> None:
+    # P = (d s + c)/(s² + b s + a)
+    plant = symobs.StateSpace("[0 1; -a -b]", "[0; 1]", C)
+    assert symobs.integral_action(plant, poles=[-1, -2, -3]).fields["solvable_if"] == said
 
 
 # -- functions of time -------------------------------------------------------------------------------------------------
