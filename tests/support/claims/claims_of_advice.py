@@ -106,6 +106,7 @@ def advice_holds(result: Any, at: Setting) -> None:
         assert radius <= 0 or all(pole.real < 0 for pole in others)
         return
     sigma = 4 / number(world.scalar(result.request.settling_time))
+    assert near([number(world.scalar(result.fields["sigma"]))], [sigma])
     assert all(pole.real <= -sigma for pole in poles)
     for pole in others:
         if pole.imag:
