@@ -107,39 +107,6 @@ def test_decimals_are_exact() -> None:
     assert check(accepted, {"transfer_function": "0.333/(s + 0.333)"}).verdict == "right"
 
 
-@pytest.mark.parametrize(
-    ("given", "digits", "verdict"),
-    [
-        ("[28/3; 28/3]", 3, "right"),
-        ("[9.33; 9.33]", 3, "right"),
-        ("[9.33; 9.33]", 5, "wrong"),
-        ("[9.3; 9.33]", 3, "wrong"),  # s² + 10.3 s + 18.63: a pole at -2.34, not at -7/3
-        ("[9.33333; 9.33333]", 5, "right"),
-        ("[-9.33; -9.33]", 3, "wrong"),
-        ("[9.33; 9.33]", None, "right"),
-        ("[9.34; 9.33]", None, "wrong"),
-    ],
-)
-def test_a_rounded_gain_is_right_to_the_digits_asked_for(given: str, digits: int | None, verdict: str) -> None:
-    problem = (
-        'task = "observer"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n[specification]\npoles = "-7/3, -8"\n[marking]\n'
-    )
-    marking = 'decimals = "accept"\n' + (f"digits = {digits}\n" if digits else "")
-    assert check(problem + marking, {"L": given}).verdict == verdict
-    exact = check(problem, {"L": given})
-    assert exact.verdict == ("right" if "/" in given else "wrong")
-
-
-def test_any_rounded_gain_of_two_inputs_is_right_that_places_the_poles() -> None:
-    """K = [3 1/3; 0 4 + x]: A - BK = [-3 2/3; 0 -4 - x] has the poles -3 and -4 - x."""
-    problem = (
-        'task = "state_feedback"\n[plant]\nA = "[0 1; 0 0]"\nB = "[1 0; 0 1]"\n[specification]\npoles = "-3, -4"\n'
-    )
-    problem += '[marking]\ndecimals = "accept"\ndigits = 3\n'
-    for entry, verdict in (("4.0001", "right"), ("4.05", "wrong")):
-        assert check(problem, {"K": f"[3 0.333; 0 {entry}]"}).verdict == verdict
-
-
 # -- what follows -----------------------------------------------------------------------------------------------------
 
 
@@ -173,12 +140,6 @@ def test_functions_far_apart_are_compared(entry: str) -> None:
     assert part.verdict == "wrong"
     expected = read(f'{problem}[expect]\nmatrix = "[({entry}) 0; 0 1]"\n')
     assert mismatches(expected.viewed(expected.solve()), expected.expect)
-
-
-def test_the_root_of_a_fraction_of_pi_is_read() -> None:
-    problem = 'task = "canonical_form"\n[plant]\nA = "[0 1; -2 -3]"\nB = "[0; 1]"\n[specification]\nkind = "modal"\n'
-    for entry in ("sqrt(1/pi)", "sqrt(2/pi)", "sqrt(pi)", "sqrt(4/pi^2)"):
-        assert one(check(problem, {"A": f"[{entry} 0; 0 1]"}), "A").verdict == "wrong"
 
 
 # -- coordinates ------------------------------------------------------------------------------------------------------
