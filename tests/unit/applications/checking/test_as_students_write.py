@@ -35,6 +35,10 @@ REGION = Checked.of(
     'task = "stability_region"\n[specification]\npolynomial = "s^2 + (h1 + 1) s + h2"\nparameters = ["h1", "h2"]\n'
 )
 
+# 0 is not seen.
+SEEN, DETECTED = (
+    problem(task, 'A = "[0 1; 0 -1]"\nC = "[0 1]"', "verdict") for task in ("observability", "detectability")
+)
 PROBLEMS = {name: value for name, value in vars().items() if isinstance(value, Checked)}
 
 
@@ -45,9 +49,7 @@ def verdicts(checked: Checked, answer: Any) -> dict[str, str]:
 
 
 @tabled
-def test_the_last_member_of_the_last_definition_is_the_answer(
-    checked: str, answer: str, expected: dict[str, str]
-) -> None:
+def test_an_answer_has_its_verdicts(checked: str, answer: Any, expected: dict[str, str]) -> None:
     assert verdicts(PROBLEMS[checked], answer) == expected
 
 
@@ -56,49 +58,6 @@ def test_a_decimal_comma_is_refused_and_never_wrong(checked: str, answer: Any) -
     part = next(part for part in PROBLEMS[checked].report(answer).parts if part.verdict != "missing")
     assert part.verdict == "unreadable"
     assert "with a decimal point" in part.reason
-
-
-@tabled
-def test_a_comma_that_sets_entries_apart_is_read_as_one(checked: str, answer: str, verdict: str) -> None:
-    assert set(verdicts(PROBLEMS[checked], answer).values()) == {verdict}
-
-
-NOTHING = ["[]", "{}", "none", "None"]
-ZERO = ["{0}", "0", "[0; 0]", "[0 0]", "{[0; 0]}"]
-
-
-@pytest.mark.parametrize("written", [*NOTHING, *ZERO])
-def test_no_kernel_but_zero(written: str) -> None:
-    assert verdicts(OBSERVABLE, f"kernel = {written}\n") == {"kernel": "right"}
-    assert verdicts(OBSERVABLE, {"kernel": written}) == {"kernel": "right"}
-    assert verdicts(UNOBSERVABLE, f"kernel = {written}\n") == {"kernel": "wrong"}
-
-
-@tabled
-def test_no_kernel_but_zero_in_a_table(written: Any) -> None:
-    assert verdicts(OBSERVABLE, {"kernel": written}) == {"kernel": "right"}
-
-
-@tabled
-def test_a_kernel_is_right_in_any_notation(written: Any) -> None:
-    assert verdicts(UNOBSERVABLE, {"kernel": written}) == {"kernel": "right"}
-    assert verdicts(OBSERVABLE, {"kernel": written}) == {"kernel": "wrong"}
-
-
-@pytest.mark.parametrize("written", NOTHING)
-def test_no_zeros(written: str) -> None:
-    assert verdicts(NO_ZEROS, f"zeros = {written}\n") == {"zeros": "right"}
-    assert verdicts(ONE_ZERO, f"zeros = {written}\n") == {"zeros": "wrong"}
-
-
-@tabled
-def test_a_region_in_lines(answer: Any, verdict: str) -> None:
-    assert verdicts(REGION, answer) == {"stable_if": verdict}
-
-
-@tabled
-def test_the_same_value_in_cells_tables_and_programs(answer: Any, expected: dict[str, str]) -> None:
-    assert verdicts(LOOP, answer) == expected
 
 
 def test_a_long_line_of_definitions_is_refused_at_once() -> None:
@@ -131,12 +90,6 @@ def test_a_line_with_the_inverse_of_zero_is_no_fault_of_ours() -> None:
     )
     found = LOOP.report(f"K = [4 3]\n{line}").lines[-1]
     assert (found.verdict, "is no time to integrate over" in found.reason) == ("false", True)
-
-
-@tabled
-def test_a_property_answers_whether_it_holds(task: str, answer: str, verdict: str) -> None:
-    seen = problem(task, 'A = "[0 1; 0 -1]"\nC = "[0 1]"', "verdict")  # 0 is not seen
-    assert verdicts(seen, answer) == {"verdict": verdict}
 
 
 @pytest.mark.parametrize("letter", ["chi", "chi_A(s)", "p(s)", "P"])
