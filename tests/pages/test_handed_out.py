@@ -15,6 +15,7 @@ from tests.kit import tabled
 from tests.pages.test_sheet import typeset
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import inside
+from tests.unit.cli.test_time_and_memory import GENERIC
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -276,15 +277,7 @@ def test_children_write_the_same_sheet(folder: Path, monkeypatch: pytest.MonkeyP
 
 @pytest.mark.slow
 def test_what_takes_a_child_too_long_keeps_its_question(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = [f"{kind}{i}{j}" for kind, columns in (("a", 6), ("c", 2)) for i in range(6) for j in range(columns)]
-    symbols = "\n".join(f'{name} = "real"' for name in names)
-    A, C = (
-        "; ".join(" ".join(f"{kind}{i}{j}" for j in range(6)) for i in range(rows))
-        for kind, rows in (("a", 6), ("c", 1))
-    )
-    symbols += "".join(f'\nc0{j} = "real"' for j in range(2, 6))
-    hard = f'title = "Hard"\ntask = "observer"\n[symbols]\n{symbols}\n[plant]\nA = "[{A}]"\nC = "[{C}]"\n'
-    (folder / "one.toml").write_text(f'{hard}[specification]\npoles = "-1, -2, -3, -4, -5, -6"\n', "utf-8")
+    (folder / "one.toml").write_text(GENERIC, "utf-8")
     monkeypatch.setattr("symobs.cli.shared.sheet_entries._WORTH_CHILDREN", 2)
     run = inside("sheet", "sheet.toml", "--format", "json", "--timeout", "3", folder=folder)
     assert run.code == 5
@@ -294,7 +287,7 @@ def test_what_takes_a_child_too_long_keeps_its_question(folder: Path, monkeypatc
     )
     first, second = json.loads(run.out)["problems"]
     assert first["results"][0]["verdict"] == "yes"
-    assert (second["title"], second["results"]) == ("Hard", None)
+    assert (second["title"], second["results"]) == ("All of sixth order", None)
     assert "Design an observer" in second["question"]
     assert second["failure"] == PHRASES["sheet_undecided"]
 

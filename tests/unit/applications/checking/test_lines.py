@@ -22,40 +22,10 @@ def lines(
     return [(line.verdict, line.origins) for line in checked.report(text, "reason", convention).lines]
 
 
-TRUE = [
-    "A - L C = [-19 1; -81 -1]",
-    "det(s I - A) = s^2 + s = s (s + 1)",
-    "det(s I - A + L C) = s^2 + 20 s + 100 = (s + 10)^2",
-    "A - B K = [0 1; -4 -4]",
-    "eigenvalues(A) = [0 -1]",
-    "rank(O) = 2",
-    "K = [4 3]",
-    "F = (319 s + 400)/(s^2 + 23 s + 161)",
-]
-FALSE = [
-    "A - L C = [-19 1; -81 1]",
-    "det(s I - A) = s^2 - s",
-    "det(s I - A + L C) = s^2 + 20 s + 10",
-    "A - B K = [0 1; -4 -2]",
-    "rank(O) = 1",
-    "det(s I - A + B K) = s^2 + 4 s + 5",
-    "K = [4 4]",
-    "L = [-19; -81]",
-    "F = (319 s + 400)/(s^2 + 23 s + 160)",
-    "A L = [81; 81]",
-]
-
-
-@pytest.mark.parametrize("line", TRUE)
-def test_a_true_line(line: str) -> None:
-    assert lines(line) == [("true", ())]
-
-
 @pytest.mark.parametrize("place", range(1, 4))
-@pytest.mark.parametrize("line", FALSE)
-def test_the_first_false_line_is_named(line: str, place: int) -> None:
-    before = TRUE[: place - 1]
-    report = SERVO_CHECKED.report("\n".join([*before, line, "A B = [1; -1]"]))
+def test_the_first_false_line_is_named(place: int) -> None:
+    before = ["K = [4 3]", "rank(O) = 2"][: place - 1]
+    report = SERVO_CHECKED.report("\n".join([*before, "A L = [81; 81]", "A B = [1; -1]"]))
     assert report.first_false == f"line {place}"
     assert [each.verdict for each in report.lines] == ["true"] * (place - 1) + ["false", "true"]
 
