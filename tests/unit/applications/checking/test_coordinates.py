@@ -100,31 +100,42 @@ def test_a_modal_form_without_T_in_any_order_and_scaling(order: tuple[int, ...])
     assert verdicts(problem, {"A": text(coupled[:3, :3])}) == {"A": "wrong"}
 
 
-def observable_layouts() -> list[sp.Matrix]:
-    """T of the dual four layouts: the columns of 𝒪⁻¹ and its last column with A, and both reversed."""
-    A, C = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([[1, 0]])
-    seen = C.col_join(C * A)
-    q = seen.inv()[:, 1]
+PLANT = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([1, 1]), sp.Matrix([[1, 0]])
+LAYOUTS = ("last row", "first row", "last column", "first column")
+
+
+def layouts(kind: str) -> list[sp.Matrix]:
+    """T of the four layouts: from the rows of 𝒞⁻¹ and 𝒞⁻¹ itself, or the columns of 𝒪⁻¹ and 𝒪 itself; and both reversed."""
+    A, B, C = PLANT
     turn = sp.Matrix([[0, 1], [1, 0]])
-    column = sp.Matrix.hstack(q, A * q).inv()
-    return [column, turn * column, seen, turn * seen]
+    if kind == "observable":
+        seen = C.col_join(C * A)
+        q = seen.inv()[:, 1]
+        column = sp.Matrix.hstack(q, A * q).inv()
+        return [column, turn * column, seen, turn * seen]
+    column = sp.Matrix.hstack(B, A * B).inv()
+    row = column[1, :].col_join(column[1, :] * A)
+    return [row, turn * row, column, turn * column]
 
 
 @pytest.mark.parametrize("number", range(4))
-def test_the_observable_form_in_any_layout_is_right_and_T_belongs_to_it(number: int) -> None:
-    A, B, C = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([1, 1]), sp.Matrix([[1, 0]])
-    T = observable_layouts()[number]
-    answer = dict(zip("TABC", map(text, (T, T * A * T.inv(), T * B, C * T.inv())), strict=True))
-    problem = CANONICAL.format("observable")
-    assert set(verdicts(problem, answer).values()) == {"right"}
-    assert set(verdicts(problem, answer | {"T": text(T.inv())}).values()) == {"right"}
+@pytest.mark.parametrize("kind", ["controllable", "observable"])
+def test_a_canonical_form_in_any_layout_is_right_and_T_belongs_to_it(kind: str, number: int) -> None:
+    T, problem = layouts(kind)[number], CANONICAL.format(kind)
+    answer = moved(T, *PLANT)
+    report, turned = check(problem, answer), check(problem, answer | {"T": text(T.inv())})
+    assert report.verdict == turned.verdict == "right"
+    if kind == "controllable":
+        layout = f"the coefficients stand in the {LAYOUTS[number]} here" if number else ""
+        assert not number or report.parts[0].hints == (layout,)
+        assert next(part for part in turned.parts if part.letter == "T").hints == (
+            "; ".join(filter(None, (layout, TURNED))),
+        )
+    changed = T * PLANT[0] * T.inv() + sp.diag(1, 0)
+    assert verdicts(problem, answer | {"A": text(changed)})["A"] == "wrong"
     for wrong in (sp.eye(2), 2 * T, sp.Matrix([[1, 1], [1, 1]])):
-        assert verdicts(problem, answer | {"T": text(wrong)}) == {
-            "T": "wrong",
-            "A": "right",
-            "B": "right",
-            "C": "right",
-        }
+        found = verdicts(problem, answer | {"T": text(wrong)})
+        assert found == {"T": "wrong", "A": "right", "B": "right", "C": "right"}
 
 
 @tabled

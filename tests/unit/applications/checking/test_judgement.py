@@ -21,15 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 EXAMPLES = ROOT / "worked_examples"
-CANONICAL = """
-task = "canonical_form"
-[plant]
-A = "[1 2; 3 4]"
-B = "[1; 1]"
-C = "[1 0]"
-[specification]
-kind = "controllable"
-"""
 
 
 def one(report: CheckReport, name: str) -> Any:
@@ -143,34 +134,6 @@ def test_functions_far_apart_are_compared(entry: str) -> None:
 
 
 # -- coordinates ------------------------------------------------------------------------------------------------------
-
-
-def layouts() -> dict[str, tuple[sp.Matrix, sp.Matrix, sp.Matrix]]:
-    """(T, Ā, B̄) in the four layouts, made here: rows of 𝒞⁻¹, the companion form, and both reversed."""
-    A, B = sp.Matrix([[1, 2], [3, 4]]), sp.Matrix([1, 1])
-    reach = sp.Matrix.hstack(B, A * B)
-    column = reach.inv()
-    q = column[1, :]
-    row = sp.Matrix.vstack(q, q * A)
-    turn = sp.Matrix([[0, 1], [1, 0]])
-    made = {"last row": row, "first row": turn * row, "last column": column, "first column": turn * column}
-    return {name: (T, T * A * T.inv(), T * B) for name, T in made.items()}
-
-
-@pytest.mark.parametrize("name", layouts())
-def test_a_canonical_form_in_any_layout_is_right(name: str) -> None:
-    T, Abar, Bbar = layouts()[name]
-    Cbar = sp.Matrix([[1, 0]]) * T.inv()
-    answer = dict(zip("TABC", map(text, (T, Abar, Bbar, Cbar)), strict=True))
-    report = check(CANONICAL, answer)
-    assert report.verdict == "right"
-    assert name == "last row" or name in report.parts[0].hints[0]
-    inverse = check(CANONICAL, answer | {"T": text(T.inv())})
-    layout = "" if name == "last row" else f"the coefficients stand in the {name} here; "
-    assert one(inverse, "T").hints == (f"{layout}you gave T^-1: here the new state is T x",)
-    changed = Abar.copy()
-    changed[0, 0] += 1
-    assert one(check(CANONICAL, answer | {"A": text(changed)}), "A").verdict == "wrong"
 
 
 def test_rows_of_a_block_may_be_permuted_and_kernels_have_any_basis() -> None:
