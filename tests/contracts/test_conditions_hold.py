@@ -92,7 +92,7 @@ BUILT = {
     """,
 }
 
-#: Fractions know no roots: the lines of examples with roots in their data are held with 60 digits, and their answers to PARI.
+#: Fractions know no roots: lines of examples with roots in their data are held with 60 digits, their answers to the file.
 WITH_ROOTS = {
     "coupled_masses_irrational",
     "inverted_pendulum_integral_action",

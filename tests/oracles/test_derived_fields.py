@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 FOLDER = ROOT / "worked_examples"
-#: Fractions know no roots: examples with roots in their plant are held to PARI.
+#: Fractions know no roots: lines of examples with roots in their plant are held with 60 digits.
 WITH_ROOTS = {"coupled_masses_irrational", "sensor_at_a_node"}
 TEXTS = {path.stem: path.read_text("utf-8") for path in sorted(FOLDER.glob("*.toml"))}
 EXAMPLES = sorted(TEXTS.keys() - WITH_ROOTS)
