@@ -128,16 +128,6 @@ def test_a_named_coefficient_is_a_new_name_that_stands_for_one_thing() -> None:
 # -- conditions --------------------------------------------------------------------------------------------------------
 
 
-def test_an_assumption_holds_from_there_on() -> None:
-    distinct = said(c, "!=", 1)
-    refused(Equal((distinct,)))
-    assert checked(Given((distinct,)), Equal((distinct, said(2 - 2 * c, "!=", 0)))).nonzero == (c - 1,)
-    refused(Equal((distinct,)), Given((distinct,)))
-    refused(Given((distinct,)), Equal((said(c, "!=", 2),)))
-    refused(Given((said(c, "!=", c),)), match="c != c")  # nothing is different from itself
-    refused(CaseStep(said(c, 1), (), (Given((distinct,)),)), match="c != 1")  # nor from what it is here
-
-
 def test_an_assumption_is_the_one_that_is_said() -> None:
     first, second = said(c, "!=", 1), said(c, "!=", 2)
     checked(Given((first,), slot(first)))
@@ -182,51 +172,6 @@ def test_a_free_signal_ceases_to_be_free() -> None:
 
 
 # -- cases -------------------------------------------------------------------------------------------------------------
-
-
-def case(*steps: Step, when: Relation | None = None, at: int = 1) -> CaseStep:
-    return CaseStep(when or said(c - 1, 0), (("c", Scalar.of(at)),), steps)
-
-
-def test_a_case_lies_on_its_stratum_and_nothing_of_it_stays() -> None:
-    rank = said(Apply("det", Apply("adj", Product((Transpose(C), C)))), 0)
-    known = checked(A_IS, C_IS, case(Equal((said(C, Matrix.of([[1, 1]])),)), Define(said(F, 1))), Equal((rank,)))
-    assert "F" not in known.values
-    assert known.values["C"] == Matrix.of([[1, c]])
-    refused(C_IS, case(Equal((said(C, Matrix.of([[1, c]]), Matrix.of([[1, 2]])),))))
-    refused(C_IS, case(at=2))
-    refused(C_IS, case(when=said(c, "!==", 2)))
-    refused(C_IS, case(when=said(c, 0)))
-    refused(C_IS, case(when=said(0, 0)))
-    refused(C_IS, case(when=said((c - 1) * (c - 3), 0)))
-    refused(C_IS, case(when=said((c - 1) * b, 0)))
-    checked(C_IS, case(when=said(2 * a * (c - 1), 0)))
-    refused(C_IS, case(when=said(b, 0)))
-    refused(C_IS, CaseStep(said(c - 1, 0), (("c", Scalar.of(1)), ("b", Scalar.of(0))), ()))
-    refused(C_IS, case(Equal((said(1, 2),))))
-
-
-def test_a_case_without_substitution_knows_its_equation_and_no_more() -> None:
-    here = said(C, Matrix.of([[1, 1]]))
-    checked(C_IS, CaseStep(said(c, 1), (), (Equal((here,)),)))
-    refused(C_IS, CaseStep(said(c, 1), (), (Equal((said(C, Matrix.of([[1, 2]])),)),)))
-    refused(C_IS, CaseStep(said(c, 1), (), ()), Equal((here,)))
-    refused(C_IS, CaseStep(said(1, 0), (), (Equal((here,)),)))
-    refused(C_IS, CaseStep(said(c, "!==", 1), (), (Equal((here,)),)))
-
-
-def test_a_letter_anew_in_a_case_has_no_meaning_before() -> None:
-    other = Define(said(C, Matrix.of([[1, 5]])))
-    refused(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (other,)))
-    checked(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (other,), anew=("C",)))
-    refused(C_IS, CaseStep(said(c, 1), (("c", Scalar.of(1)),), (Equal((said(C, C),)),), anew=("C",)))
-
-
-def test_a_letter_that_means_nothing_on_the_stratum_may_not_be_used_there() -> None:
-    pole = Given((said(L, Matrix.of([[1 / (c - 1)], [0]])),))
-    checked(pole, case())
-    refused(pole, case(Equal((said(L, L),))), match="before it is established")
-    checked(pole, case(Define(said(L, Matrix.zeros(2, 1)))))
 
 
 # -- derivations -------------------------------------------------------------------------------------------------------

@@ -343,15 +343,6 @@ def test_a_letter_of_a_signal_is_no_value() -> None:
     refused(Define(said(Letter("s"), s)))
 
 
-def test_a_case_may_narrow_and_starts_anew() -> None:
-    distinct = CaseStep(said(c, "!=", 1), (), (Equal((said(C, C),)),))
-    checked(C_IS, distinct)
-    refused(C_IS, replace(distinct, steps=(Equal((two,)),)))
-    refused(C_IS, replace(distinct, sentence=slot(two)))
-    refused(C_IS, replace(distinct, anew=("C",)))
-    refused(C_IS, CaseStep(said(c, "!=", 1), (), ()), Equal((said(c, "!=", 1),)))
-
-
 @pytest.mark.parametrize("step", [Equal((two,)), Conclude(None, (two,))])
 def test_what_stands_inside_is_checked(step: Step) -> None:
     refused(Section(Sentence("test_plain"), (step,)))
@@ -369,39 +360,6 @@ def case(when: Relation | Conjunction, *steps: Step, **put_in: Scalar | int) -> 
     return CaseStep(when, values, steps)
 
 
-def equal(*relations: Relation) -> Equal:
-    return Equal(relations)
-
-
-def test_a_case_may_say_which_of_two_is_larger() -> None:
-    above, below = case(said(c, ">", 1), equal(said(c, ">", 1))), case(said(c, "<", 1), equal(said(1, ">", c)))
-    for right in (above, below):
-        checked(right, start=ON)
-        refused(replace(right, steps=(equal(said(c, ">", 2)),)), start=ON)
-        refused(replace(right, steps=(equal(said(c, "<", 0)),)), start=ON)
-        refused(replace(right, steps=()), *right.steps, start=ON)
-        refused(replace(right, when=said(1, 1)), start=ON)
-        refused(replace(right, substitution=(("c", Scalar.of(2)),)), start=ON)
-        refused(replace(right, substitution=(("c", Scalar.of(2)),), steps=()), start=ON)
-    checked(case(said(c, ">", 1), case(said(b, ">", 2), equal(said(c, ">", 1), said(b, ">", 2)))), start=ON)
-    checked(case(said(b, ">", c), case(said(c, 1), equal(said(b, ">", 1)), c=1)), start=ON)
-    refused(case(said(b, ">", c), case(said(c, 1), equal(said(b, ">", 2)), c=1)), start=ON)
-    for operator in ("<=", ">=", "!==", "~"):
-        refused(case(said(c, operator, 1)), start=ON)
-    for operator in ("<", ">", "!="):
-        refused(case(said(c, "!=", 1), equal(said(c, operator, 1))), start=ON)
-
-
-def test_where_the_data_mean_something_is_the_same_on_a_stratum() -> None:
-    given = Given((said(F, 1 / (b + c)),))
-    checked(given, equal(said(b + c, "!=", 0)), start=ON)
-    checked(given, case(said(c, 1), equal(said(b + 1, "!=", 0)), c=1), start=ON)
-    for other in (b, b + 2):
-        refused(given, case(said(c, 1), equal(said(other, "!=", 0)), c=1), start=ON)
-    refused(case(said(c, 1), equal(said(b + 1, "!=", 0)), c=1), start=ON)
-    checked(given, case(said(b + c, 0), equal(said(b, b)), c=-b), start=ON)  # no plant is there
-
-
 def test_a_sentence_speaks_of_its_own_relation() -> None:
     low, high = literal(Matrix.of([[1, 2, 3], [2, 4, 6]])), literal(Matrix.of([[1, 0], [0, 1]]))
     full, lower = said(Apply("rank", high), 2), said(Apply("rank", low), "<", 2)
@@ -413,81 +371,6 @@ def test_a_sentence_speaks_of_its_own_relation() -> None:
             refused(step, start=start, match=f"which is not what {key} speaks of")
 
 
-def test_a_stratum_has_a_point() -> None:
-    """Where nothing is everything is true."""
-    nowhere = Conjunction((said(c, 1), said(c, 2)))
-    for steps in ((), (equal(said(1, 2)),)):
-        refused(case(nowhere, *steps), start=ON, match="can be")
-        refused(case(nowhere, *steps, c=1), start=ON, match="can be")
-    refused(case(Conjunction((said(c, 1), said(c, "!=", 1)))), start=ON, match="can be")
-    checked(case(Conjunction((said(c, 1), said(b, "!=", 1)))), start=ON)
-
-
-def test_equations_of_cases_within_cases_hold_together() -> None:
-    within = case(said(b, 2), equal(said(c, 1), said(b, 2), said(b * c, 2)))
-    checked(case(said(c, 1), within), start=ON)
-    checked(case(said(c * b, 1), case(said(c, 1), equal(said(b, 1)), c=1)), start=ON)
-    refused(case(said(c * b, 1), case(said(c, 1), equal(said(b, 2)), c=1)), start=ON)
-    refused(case(said(c, 1), case(said(c, 2))), start=ON)
-    different = (Given((said(b, "!=", 0),)), equal(said(b, "!=", 0)))
-    checked(case(said(c, 1), case(said(c, 1), *different, c=1)), start=ON)
-    checked(case(Conjunction((said(c, 1),)), *different, c=1), start=ON)
-    nonzero = Given((said(b * c, "!=", 1),))
-    for where in (case(said(b, 2), *different[1:]), case(Conjunction((said(b, 2),)), equal(said(b * c, "!=", 1)), b=2)):
-        refused(nonzero, replace(where, steps=(equal(said(b * c, "!=", 1)),)), start=ON)
-
-
-def test_both_sides_of_a_case_are_read() -> None:
-    checked(case(said(c, -c), equal(said(c, 0)), c=0), start=ON)
-    refused(case(said(c, -c), equal(said(c, 1)), c=1), start=ON)
-    one_by_one = replace(ON, values={"F": Matrix.of([[c]])})
-    for operator in ("=", ">"):
-        checked(case(said(F, operator, 1), equal(said(c, operator, 1))), start=one_by_one)
-    checked(case(said(F, 1), equal(said(c, 1)), c=1), start=one_by_one)
-    checked(case(Conjunction((said(F, 1),)), equal(said(c, 1)), c=1), start=one_by_one)
-
-
-def test_named_coefficients_are_on_the_stratum_too() -> None:
-    d, e = Scalar.symbol("d"), Scalar.symbol("e")
-    named = (Define(said(d, c + a)), Define(said(e, d + 2)))
-    checked(*named, case(said(c, 1), equal(said(d, a + 1), said(e, a + 3)), c=1), start=ON)
-    refused(*named, case(said(c, 1), equal(said(e, a + 2)), c=1), start=ON)
-    poles = (Define(said(d, 1 / (c - 1))), Define(said(e, d + 2)), Define(said(F, 2 * e)), Define(said(A, c)))
-    checked(*poles, case(said(c, 1), equal(said(A, 1)), c=1), start=ON)
-    refused(*poles, case(said(c, 1), equal(said(F, F)), c=1), start=ON, match="before it is established")
-    checked(*poles, case(said(c, 2), equal(said(F, 6)), c=2), start=ON)
-
-
-def test_what_is_put_in_follows_from_the_equations() -> None:
-    both = Conjunction((said(b, 1), said(c, 2)))
-    checked(case(both, equal(said(b + c, 3)), b=1, c=2), start=ON)
-    for wrong in ({"b": 2, "c": 2}, {"b": 1, "c": 3}, {"b": 1, "c": 2, "k": 0}):
-        refused(case(both, **wrong), start=ON)
-    checked(case(both, equal(said(c, 2)), b=1), start=ON)
-    checked(case(both, equal(said(b, 1), said(c, 2))), start=ON)
-    refused(case(both, equal(said(c, 3)), b=1), start=ON)
-    for operator in (">", "<", "~", "!=="):
-        refused(case(Conjunction((said(b, 1), said(c, operator, 0))), b=1), start=ON)
-    apart = Conjunction((said(b, 1), said(c, "!=", 2)))
-    checked(case(apart, equal(said(c, "!=", 2)), b=1), start=ON)
-    refused(case(apart, equal(said(c, "!=", 3)), b=1), start=ON)
-    moved = Conjunction((said(b, 1), said(c, "!=", b)))
-    checked(case(moved, equal(said(c, "!=", 1)), b=1), start=ON)
-    refused(case(moved, equal(said(c, "!=", 2)), b=1), start=ON)
-    narrowed = Conjunction((said(b * (c - 1), 0), said(c, "!=", 1)))
-    checked(case(narrowed, equal(said(b, 0)), b=0), start=ON)
-    refused(case(Conjunction(narrowed.relations[:1]), b=0), start=ON)
-    checked(case(said(c, b), case(Conjunction((said(b, 1),)), equal(said(c, 1)), b=1, c=1)), start=ON)
-    refused(case(Conjunction((said(b, 1),)), b=1, c=1), start=ON)
-
-
-def test_what_is_put_in_follows_for_real_parameters_of_their_signs() -> None:
-    for equation in ((b - 1) ** 2, a * (b - 1), (b - 1) * (b**2 + b + 1), (b - 1) ** 2 + (c - 2) ** 2):
-        checked(case(Conjunction((said(equation, 0),)), b=1), start=ON)
-    for equation in ((b - 1) * (b - 2), c * (b - 1), (b - 1) ** 2 - (c - 2) ** 2):
-        refused(case(Conjunction((said(equation, 0),)), b=1), start=ON)
-
-
 def test_a_polynomial_has_lost_roots_on_a_stratum_where_its_leading_coefficient_vanishes() -> None:
     start = replace(ON, values={"F": 1 / ((c**2 - b) * s**2 + s + c)})
     curve = Conjunction((said(c**2, b),))
@@ -495,12 +378,3 @@ def test_a_polynomial_has_lost_roots_on_a_stratum_where_its_leading_coefficient_
     checked(case(said(k, 1), Conclude(None, (Roots(F, roots_of((c**2 - b) * s**2 + s + c, "s")),))), start=start)
     refused(case(curve, Conclude(None, (Roots(F, roots_of(s + b, "s")),))), start=start)
     refused(case(said(k, 1), Conclude(None, (Roots(F, roots_of(s + c, "s")),))), start=start)
-
-
-def test_what_is_put_in_has_a_value_everywhere_there() -> None:
-    product = said(b * c, h)
-    refused(case(Conjunction((product,)), b=h / c), start=ON)
-    checked(case(Conjunction((product, said(c, "!=", 0))), equal(said(c * h, c * h)), b=h / c), start=ON)
-    checked(case(Conjunction((product, said(c * k, 1))), b=h / c), start=ON)
-    checked(case(Conjunction((said(b * a, h),)), equal(said(h, h)), b=h / a), start=ON)
-    refused(case(Conjunction((product, said(k, 1))), b=h / c), start=ON)
