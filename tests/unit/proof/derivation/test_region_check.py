@@ -61,49 +61,12 @@ ROOT_OF_TWO = square_root(Scalar.of(2))
 CUT = s**2 + s + (h - 1) ** 2 * (2 - h)
 ROOT = ("number_is_root", "CRootOf(h**3 - 2, 0)", "h**3 - 2 = 0", "the only real root")
 IN_ONE = "in exactly one cell all roots are stable"
-ON_A_LINE = {
-    "half": (s + h, [("zero_decides", "h = 0", "two intervals", "one of them")], ["h > 0"]),
-    "empty": ((s - 1) * (s + h), [("region_empty",)], []),
-    "cut": (
-        CUT,
-        [("zeros_decide", "h = 1; h = 2", "three intervals", "two of them"), ("point_missing", "h", "1")],
-        ["h < 1", "1 < h < 2"],
-    ),
-    "root": (
-        s + h**3 - 2,
-        [("zero_decides", "h = CRootOf(h**3 - 2, 0)", "two intervals", "one of them"), ROOT],
-        ["h > CRootOf(h**3 - 2, 0)"],
-    ),
-    "three": (
-        s + (h**2 - 1) * (h**2 - 4),
-        [("zeros_decide", "h = -2; h = -1; h = 1; h = 2", "five intervals", "three of them")],
-        ["h < -2", "-1 < h < 1", "h > 2"],
-    ),
-    "whole": (s + h**2 + 1, [("region_everywhere", "SymbolList(names=('h',))")], [""]),
-    "never": (s**2 - h, [("region_empty",)], []),
-    "two cuts": (
-        s**2 + s + (h - 1) ** 2 * (h - 2) ** 2,
-        [
-            ("zeros_decide", "h = 1; h = 2", "three intervals", "all of them"),
-            ("point_missing", "h", "1"),
-            ("point_missing", "h", "2"),
-        ],
-        ["h < 1", "1 < h < 2", "h > 2"],
-    ),
-    "two roots": (
-        s + (h**3 - 2) * (5 - h**3),
-        [
-            ("zeros_decide", "h = CRootOf(h**3 - 2, 0); h = CRootOf(h**3 - 5, 0)", "three intervals", "one of them"),
-            ("numbers_are_roots", "CRootOf(h**3 - 2, 0)", "h**3 - 2 = 0", "CRootOf(h**3 - 5, 0)", "h**3 - 5 = 0"),
-        ],
-        ["CRootOf(h**3 - 2, 0) < h < CRootOf(h**3 - 5, 0)"],
-    ),
-}
 
 
-@pytest.mark.parametrize(("polynomial", "findings", "intervals"), ON_A_LINE.values(), ids=ON_A_LINE)
-def test_what_is_said_of_intervals(polynomial: Scalar, findings: list[tuple[str, ...]], intervals: list[str]) -> None:
-    assert found(polynomial) == findings
+@tabled
+def test_what_is_said_of_intervals(text: str, findings: list[list[str]], intervals: list[str]) -> None:
+    polynomial = scalar(text)
+    assert found(polynomial) == [tuple(finding) for finding in findings]
     region = region_of(polynomial, IN_S, discrete=False)
     assert isinstance(region, LineRegion)
     parts = interval_relations(region)
@@ -120,25 +83,12 @@ def test_what_is_said_of_intervals(polynomial: Scalar, findings: list[tuple[str,
             assert not is_survey(replace(step, parts=tuple(other)), polynomial, IN_S, discrete=False)
 
 
-def test_what_is_said_of_pieces_of_a_plane() -> None:
-    quadrant = found(s**2 + h * s + k)
-    assert quadrant == [("cells_decide", "h", "the plane", "four cells", IN_ONE), ("connected_unbounded",)]
-    assert ("pieces", "two pieces", "none of them is") in found(s**2 + s + h * k)
-    without_origin = found(s**2 + s + h**2 + k**2)
-    assert ("hole", "0", "0", "h", "k") in without_origin
-    assert ("connected_unbounded",) in without_origin
-    circle = found(s**2 + s + (h**2 + k**2 - 1) ** 2)
-    assert ("pieces", "two pieces", "one of them is") in circle
-    assert ("curve_missing", "h**2 + k**2 - 1 = 0") in circle
-    assert ("connected_bounded",) in found(s**2 + s + 1 - h**2 - k**2)
-    assert found((s - 1) * (s + h + k)) == [("region_empty",)]
-    assert found(s**2 - h * k) == [("region_empty",)]
-    for polynomial in (s**2 + (h**3 - 2) * s + k, s**2 + (2 - h**3) * s + k):
-        assert found(polynomial)[2:] == [ROOT]
-    holes = [one for one in found(s**2 + s + (h**2 - 1) ** 2 + k**2) if one[0] == "hole"]
-    assert holes == [("hole", "-1", "0", "h", "k"), ("hole", "1", "0", "h", "k")]
-    assert not any(one[0] == "hole" for one in found(s**2 + s + h**2 + (k**3 - 2) ** 2))  # ∛2 is not written
-    assert found(s**2 + s + h**2 * k**2)[2:] == [("curve_missing", "k = 0"), ("curve_missing", "h = 0")]
+@tabled
+def test_what_is_said_of_pieces_of_a_plane(polynomial: str, said: list[list[str]]) -> None:
+    told = found(scalar(polynomial))
+    assert all(tuple(finding) in told for finding in said)
+    for key in ("hole", "curve_missing", "region_empty"):
+        assert [list(finding) for finding in told if finding[0] == key] == [each for each in said if each[0] == key]
 
 
 def test_the_lines_of_a_division_are_those_over_whose_points_its_pieces_are_stacked() -> None:
