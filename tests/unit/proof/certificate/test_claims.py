@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from typing import TYPE_CHECKING
+from typing import Any
 
 import pytest
 
@@ -28,24 +28,11 @@ from symobs.formula.tree import (
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate import claims
 from symobs.proof.certificate.claims import ERROR_GOAL, Claim, check, check_all, verify
-
-if TYPE_CHECKING:
-    from symobs.formula.tree import Formula
+from tests.kit import member, scalar, scalars, tabled
+from tests.support.problems.steps import literal, said
 
 A, L, C, S = Letter("A"), Letter("L"), Letter("C"), Letter("s")
 s, a, b, c = (Scalar.symbol(name) for name in "sabc")
-
-
-def said(*members: Formula | Scalar | Matrix | int | str) -> Relation:
-    operators = [member for member in members if isinstance(member, str)]
-    formulas = [literal(m) for m in members if not isinstance(m, str)]
-    return Relation(tuple(formulas), tuple(operators or ["="] * (len(formulas) - 1)))
-
-
-def literal(member: Formula | Scalar | Matrix | int) -> Formula:
-    if isinstance(member, int):
-        return Literal(Scalar.of(member))
-    return Literal(member) if isinstance(member, (Scalar, Matrix)) else member
 
 
 @pytest.fixture(params=["exactly", "at points"])
@@ -155,21 +142,24 @@ def test_signals_agree_in_every_free_signal() -> None:
     assert not verify(said(E, "!==", X), LOOP)[0], "signals are compared by equations only"
 
 
-# -- named coefficients -------------------------------------------------------------------------------------------------
+# -- where conditions and relations hold ------------------------------------------------------------------------------
+
+
+def part(given: Any) -> Any:
+    """Read a member of a relation, a matrix as its rows, or the rank of one."""
+    if isinstance(given, dict):
+        return Apply("rank", Literal(member(given["rank"])))
+    return given if str(given) in {"~", "≈", "!=="} else member(given)
 
 
 @pytest.mark.usefixtures("way")
-def test_named_coefficients_stand_for_their_meaning() -> None:
-    d = Scalar.symbol("d")
-    named = Environment(coefficients={"b": 2 * c, "d": b + 1})
-    assert verify(said(b + 1, 2 * c + 1), named)[0]
-    assert verify(said(d, 2 * c + 1), named)[0]
-    assert verify(said(b * b - b * b, 0), named)[0]
-    assert not verify(said(b, c), named)[0]
-    assert not verify(said(b, "!==", 2 * c), named)[0], "different letters for the same thing"
-    assert verify(said(b, "!==", c), named)[0]
-    assert not verify(said(b, "!=", 0), named)[0]
-    assert verify(said(b**2 + 1, ">", 0), named)[0]
+@tabled
+def test_a_relation_holds_or_not(relation: list[Any], known: dict[str, Any], *, holds: bool) -> None:
+    """For named coefficients, rows that span, ranks, rounded decimals: in general, and where others vanish or do not."""
+    read = {name: tuple(scalars(known[name])) for name in known.keys() & {"relations", "nonzero", "domain", "positive"}}
+    named = {name: scalar(value) for name, value in known.get("coefficients", {}).items()}
+    environment = Environment(signs=known.get("signs", {}), coefficients=named, **read)
+    assert bool(verify(said(*map(part, relation)), environment)[0]) is holds
 
 
 # -- random points ------------------------------------------------------------------------------------------------------
