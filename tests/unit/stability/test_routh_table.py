@@ -231,57 +231,23 @@ def test_what_is_said_is_among_the_findings() -> None:
     checked(define, table)
     for finding in table.findings:
         checked(define, replace(table, findings=(finding,)))
-    lies = (
-        Sentence("routh_positive"),
-        Sentence("routh_criterion_positive"),
-        Sentence("routh_changes", (("changes", Counted("sign_changes", 1)), ("right", Counted("root_lies", 1)))),
-        Sentence(
-            "routh_changes_axis",
-            (
-                ("changes", Counted("sign_changes", 2)),
-                ("right", Counted("root_lies", 1)),
-                ("axis", Counted("root_lies", 2)),
-            ),
-        ),
-        Sentence(
-            "routh_changes_axis",
-            (
-                ("changes", Counted("sign_changes", 1)),
-                ("right", Counted("root_lies", 2)),
-                ("axis", Counted("root_lies", 2)),
-            ),
-        ),
-        Sentence(
-            "routh_changes_axis",
-            (
-                ("changes", Counted("sign_changes", 1)),
-                ("right", Counted("root_lies", 1)),
-                ("axis", Counted("root_lies", 1)),
-            ),
-        ),
-        Sentence("routh_divides", (("auxiliary", literal(2 * s**4 + 48 * s**2 + 50)),)),
-        Sentence("routh_epsilon", (("epsilon", said(small, ">", 0)),)),
-        Sentence("routh_zero_row"),
-    )
-    for lie in lies[:-1]:
-        refused(define, replace(table, findings=(lie,)))
     regular = shown([1, 2, 3, 1])
-    refused(regular[0], replace(regular[1], findings=lies[-1:]))
+    for steps, key in (
+        ((define, table), "routh_positive"),
+        ((define, table), "routh_criterion_positive"),
+        (regular, "routh_zero_row"),
+    ):
+        refused(steps[0], replace(steps[1], findings=(Sentence(key),)))
 
 
-def test_the_table_is_that_of_the_letter() -> None:
+def test_the_table_is_that_of_a_polynomial() -> None:
     define, table = shown([1, 2, 3, 1])
-    refused(table, match="before it is established")
-    refused(define, replace(table, polynomial=literal(s**3 + 2 * s**2 + 3 * s + 1)), match="no letter's")
     refused(define, replace(table, polynomial=Sum((CHI, CHI))))
-    refused(Define(said(CHI, s**3 + 2 * s**2 + 3 * s + 2)), table, match="the table of")
     refused(define, replace(table, variable="w"))
     refused(Define(said(CHI, 1 / (s + 1))), Tabulate(CHI, routh_table(whole([1, 1])), "s"))
     one = 1 / (s + 2)
     refused(Define(said(CHI, (s + 1) * one)), Tabulate(CHI, routh_table([one, one]), "s"))
     refused(Define(said(CHI, 7)), Tabulate(CHI, routh_table(whole([7])), "s"))
-    checked(define, replace(table, sentence=Sentence("routh_table", (("polynomial", CHI),))))
-    refused(define, replace(table, sentence=Sentence("routh_table", (("polynomial", Letter("phi")),))))
 
 
 def test_nothing_is_divided_by_what_is_known_to_be_zero() -> None:

@@ -164,25 +164,15 @@ def test_an_exponential_is_that_of_the_letters(key: str) -> None:
     assert fits(key, said(0, "<", 1), POLES) is False
 
 
-def test_the_third_digit_is_one_higher() -> None:
-    for value, higher in (
-        ("1.5", "1.51"),
-        ("1", "1.01"),
-        ("9.99", "10"),
-        ("10", "10.1"),
-        ("99.9", "100"),
-        ("100", "101"),
-        ("999", "1000"),
-        ("1000", "1010"),
-        ("123456", "124456"),
-        ("0.5", "0.501"),
-        ("0.1", "0.101"),
-        ("0.01", "0.0101"),
-    ):
-        assert _one_higher(Fraction(value)) == Fraction(higher)
-    for value in ("0", "-1"):
-        with pytest.raises(ValueError, match=value):
-            _one_higher(Fraction(value))
+@tabled
+def test_the_third_digit_is_one_higher(value: str, higher: str) -> None:
+    assert _one_higher(Fraction(value)) == Fraction(higher)
+
+
+@pytest.mark.parametrize("value", ["0", "-1"])
+def test_only_what_is_positive_has_a_third_digit(value: str) -> None:
+    with pytest.raises(ValueError, match=value):
+        _one_higher(Fraction(value))
 
 
 # -- facts ------------------------------------------------------------------------------------------------------------------

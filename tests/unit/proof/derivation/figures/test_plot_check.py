@@ -17,8 +17,8 @@ from symobs.formula.tree import Environment, Letter, Literal, Product
 from symobs.proof.derivation import plot_check as root_locus_check
 from symobs.proof.derivation import plot_check as time_response_check
 from symobs.proof.derivation.plot_check import faults, faults_of_poles, faults_of_response
-from tests.kit import tabled
-from tests.support.regions.drawn_by_hand import h1, h2, k, s
+from tests.kit import scalar, tabled
+from tests.support.regions.drawn_by_hand import h1, h2, s
 
 if TYPE_CHECKING:
     from symobs.formula.figures import Picture
@@ -36,37 +36,22 @@ def at(x: Any, y: Any) -> tuple[Fraction, Fraction]:
     return Fraction(x), Fraction(y)
 
 
+b = Scalar.symbol("b")
+HALF_PLANE = RegionPicture(("h1", "h2"), ((Fraction(1), Fraction(2)), (Fraction(1), Fraction(2))), (), ())
+
 # -- regions ------------------------------------------------------------------------------------------------------------
 
 
-def test_numbers_that_are_drawn_for_are_allowed_and_are_numbers() -> None:
+@tabled
+def test_numbers_that_are_drawn_for_are_allowed(sign: str, number: int, *, allowed: bool) -> None:
+    shown = replace(HALF_PLANE, drawn_for=(("b", Scalar.of(number)),))
+    assert told(shown, s - h1 - h2 + b - number, b=sign)[:1] == ([] if allowed else [f"b = {number}"])
 
-    half_plane = RegionPicture(("h1", "h2"), ((Fraction(1), Fraction(2)), (Fraction(1), Fraction(2))), (), ())
-    b = Scalar.symbol("b")
-    for sign, number in (
-        ("positive", 0),
-        ("positive", -1),
-        ("negative", 0),
-        ("negative", 1),
-        ("nonnegative", -1),
-        ("nonpositive", 1),
-        ("nonzero", 0),
-    ):
-        drawn = replace(half_plane, drawn_for=(("b", Scalar.of(number)),))
-        assert told(drawn, s - h1 - h2 + 0 * b, b=sign)[0] == f"b = {number}"
-    for sign, number in (
-        ("positive", 1),
-        ("negative", -1),
-        ("nonnegative", 0),
-        ("nonpositive", 0),
-        ("nonzero", -1),
-        ("real", -1),
-    ):
-        drawn = replace(half_plane, drawn_for=(("b", Scalar.of(number)),))
-        assert told(drawn, s - h1 - h2 + b - number, b=sign) == []
-    letters = replace(half_plane, drawn_for=(("b", h1),))
+
+def test_numbers_that_are_drawn_for_are_numbers() -> None:
+    letters = replace(HALF_PLANE, drawn_for=(("b", h1),))
     assert told(letters, s - h1 - h2 + b, b="real")[0] == "b = h1"
-    assert "alone" in told(half_plane, s - h1 - h2 - b)[0]
+    assert "alone" in told(HALF_PLANE, s - h1 - h2 - b)[0]
 
 
 WHOLE = (at(-2, -2), at(2, -2), at(2, 2), at(-2, 2))
@@ -86,51 +71,21 @@ def test_a_mark_says_what_is_so(kind: str, *, shaded: bool, expected: bool) -> N
 # -- poles --------------------------------------------------------------------------------------------------------------
 
 
-def poles(picture: PoleMap, polynomial: Scalar, variable: str = "s", *, discrete: bool = False) -> list[str]:
-    return list(faults_of_poles(picture, polynomial, variable, discrete=discrete))
+@tabled
+def test_poles_are_where_they_are(parts: dict[str, Any], polynomial: str, time: str, fault: str) -> None:
+    """Of s + k, which has the pole −k: drawn at k = 0, 1, 2."""
+    ways: dict[str, Any] = {"paths": [[[0, 0], [-1, 0], [-2, 0]]], "along": [[0, 1, 2]], "values": [0, 2]}
+    ways |= {"window": [[-5, 5], [-5, 5]]} | parts
+    paths = tuple(tuple(at(*place) for place in path) for path in ways["paths"])
+    values, window, along = (numbers(ways[name]) for name in ("values", "window", "along"))
+    drawn = PoleMap("s", "k", values, paths, window, along=along)
+    variable = "z" if "z" in polynomial else "s"
+    found = list(faults_of_poles(drawn, scalar(polynomial), variable, discrete=time == "discrete"))
+    assert found[:1] == ([fault] if fault else [])
 
 
-def straight(*paths: tuple[tuple[int, int], ...], along: tuple[tuple[int, ...], ...], **more: Any) -> PoleMap:
-    places = tuple(tuple(at(*place) for place in path) for path in paths)
-    values = tuple(tuple(map(Fraction, one)) for one in along)
-    window = ((Fraction(-5), Fraction(5)), (Fraction(-5), Fraction(5)))
-    return PoleMap("s", "k", (Fraction(0), Fraction(2)), places, window, along=values, **more)
-
-
-def test_a_pole_is_where_it_is() -> None:
-    """s + k has the pole −k."""
-    good = straight(((0, 0), (-1, 0), (-2, 0)), along=((0, 1, 2),))
-    assert poles(good, s + k) == []
-    assert poles(good, s + k + 1)[0] == "(0, 0) is a pole at k = 0"
-    assert poles(good, s - k)[0] == "(-1, 0) is a pole at k = 1"
-    assert poles(good, s + k, discrete=True)[0] == "the poles are those in s"
-    assert poles(good, Scalar.symbol("z") + k, "z")[0] == "the poles are those in s"
-    assert poles(replace(good, paths=(), along=()), s + k) == ["there are 0 poles"]
-    assert poles(replace(good, along=good.along * 2), s + k) == ["there are 1 poles"]
-    assert poles(replace(good, paths=good.paths * 2), s + k) == ["there are 2 poles"]
-    narrow = replace(good, window=((Fraction(-1), Fraction(5)), (Fraction(-5), Fraction(5))))
-    assert poles(narrow, s + k)[0] == "the poles do not leave the window"
-    for along in ((0, 2), (0, 1, 1), (1, 1, 2), (0, 3, 2), (2, 1, 0)):
-        spoiled = replace(good, along=(tuple(map(Fraction, along)),))
-        assert poles(spoiled, s + k)[0] == "k goes from 0 to 2"
-    back = replace(good, values=(Fraction(2), Fraction(0)), along=((Fraction(2), Fraction(1), Fraction(0)),))
-    assert poles(replace(back, paths=(good.paths[0][::-1],)), s + k) == []
-
-
-def test_all_poles_are_drawn_each_once() -> None:
-    """(s + k) (s + k + 1) has −k and −k − 1."""
-    first, second = ((0, 0), (-1, 0), (-2, 0)), ((-1, 0), (-2, 0), (-3, 0))
-    polynomial = (s + k) * (s + k + 1)
-    assert poles(straight(first, second, along=((0, 1, 2),) * 2), polynomial) == []
-    assert poles(straight(first, first, along=((0, 1, 2),) * 2), polynomial) == ["these are all poles"]
-    assert poles(straight(first, first, along=((0, 1, 2),) * 2), (s + k) ** 2) == []
-
-
-def test_a_pole_drawn_roughly_is_near_enough_and_no_more() -> None:
-    good = straight(((0, 0), (-1, 0), (-2, 0)), along=((0, 1, 2),))
-    for off, is_near in ((Fraction(1, 20), True), (Fraction("0.0501"), False)):
-        path = ((off, Fraction(0)), *good.paths[0][1:])
-        assert (poles(replace(good, paths=(path,)), s + k) == []) == is_near
+def numbers(value: Any) -> Any:
+    return tuple(map(numbers, value)) if isinstance(value, list) else Fraction(value)
 
 
 @tabled
@@ -169,34 +124,15 @@ def responses(*drawn: PlottedResponse, subject: str = "A", start: tuple[int, ...
     return list(faults_of_response(response, Letter(subject), DECAY))
 
 
-def test_a_course_that_stays_is_drawn_so() -> None:
+@tabled
+def test_a_course_that_stays_is_drawn_so(drawn: list[dict[str, Any]], asked: dict[str, Any], faults: list[str]) -> None:
     """x′ = 0 keeps x, and y = 2 x."""
-    assert responses(course(1, 1, 1)) == []
-    assert responses(course(1, 1, 1), course(2, 2, 2, signal="y", row=(2,))) == []
-    assert responses(course(1, 1, 2)) == ["the response of x"]
-    assert responses(course(1, 1, 1), course(2, 2, 1, signal="y", row=(2,))) == ["the response of y"]
-    assert responses(course(1, 1, 1), subject="F") == ["an equation of x with this matrix"]
-    assert responses(course(1, 1, 1, row=(2,))) == ["an equation of x with this matrix"]
-    for window in (
-        ((Fraction(1), Fraction(2)), WIDE[1]),
-        ((Fraction(0), Fraction(0)), WIDE[1]),
-        ((Fraction(0), Fraction(-2)), WIDE[1]),
-        (WIDE[0], (Fraction(3), Fraction(3))),
-        (WIDE[0], (Fraction(3), Fraction(-1))),
-    ):
-        assert responses(course(1, 1, 1), window=window) == ["a window that begins at 0 and that responses fill"]
-    assert responses() == responses(course(1)) == ["a window that begins at 0 and that responses fill"]
-    for parts in (0, -PARTS):
-        assert responses(course(1, 1, 1), parts=parts) == ["a window that begins at 0 and that responses fill"]
-    twice = course(2, 2, signal="y", row=(2,))
-    assert responses(course(1, 1, 1), twice) == ["a window that begins at 0 and that responses fill"]
-    assert responses(course(1, 1, 1), parts=PARTS // 2) == ["the response of x"]
+    ways = {name: numbers(value) if name == "window" else value for name, value in asked.items()}
+    assert responses(*(course(*each.pop("values"), **each) for each in map(dict, drawn)), **ways) == faults
+
+
+def test_all_components_of_a_start_that_is_not_along_one_are_drawn() -> None:
     assert responses(replace(course(1, 1, 1), heights=(1, 1, 1)), parts=1) == []
-    assert responses(course(1, 1, 1), start=(1, 1)) == ["a start of x"]
-    assert responses(course(1, 1, 1), start=()) == ["a start of x"]
-    assert responses(course(3, 3, 3), start=(3,)) == []
-    assert responses(course(4, 4, 4), start=(4,)) == ["x, which leaves the window,"]
-    assert responses(course(-2, -2, -2), start=(-2,)) == ["x, which leaves the window,"]
     with pytest.raises(ValueError, match="not all components of x"):
         responses(course(1, 1, 1, component=1))
 
@@ -359,26 +295,8 @@ def test_too_few_bits_are_not_taken_for_enough(monkeypatch: pytest.MonkeyPatch) 
                 assert abs(part - mpmath.exp(-t) * factor) <= 2**-64
 
 
-def test_a_root_is_surely_near() -> None:
+@tabled
+def test_a_root_is_surely_near(coefficients: list[Any], within: Any, *, is_near: bool) -> None:
     """By |w|ᵏ ≤ C(n, k) |c₀/cₖ| for one root w."""
-
-    def is_near(*coefficients: Any, within: Any) -> bool:
-        shifted = [(Fraction(c), Fraction(0)) for c in coefficients]
-        return root_locus_check._has_root_near(shifted, Fraction(within))
-
-    assert is_near(1, 2, 0, within=1)
-    assert not is_near(1, 2, 0, within="0.99")
-    assert is_near(1, 0, 1, within=1)
-    assert not is_near(1, 0, 1, within="1/2")
-    assert is_near("2/5", 1, within="1/2")
-    assert not is_near("3/5", 1, within="1/2")
-    assert not is_near(1, 1, 0, within=1)
-    assert not is_near(0, 0, within=1)
-    assert is_near(0, 1, within=1)
-
-
-def test_moduli_and_distances() -> None:
-    assert root_locus_check._square(at(3, 4)) == 25
-    assert root_locus_check._square(at(3, -1)) == 10
-    assert root_locus_check._distance(at(1, 2), at(4, 6)) == 25
-    assert root_locus_check._distance(at(1, 3), at(0, -2)) == 26
+    shifted = [(Fraction(c), Fraction(0)) for c in coefficients]
+    assert root_locus_check._has_root_near(shifted, Fraction(within)) is is_near
