@@ -7,14 +7,12 @@ from contextlib import suppress
 from time import process_time
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pytest
-import sympy
 
 import symobs
 from symobs.applications.checking.answers import read_answer
 from symobs.formula.expression import comma_between_digits, parse_matrix, parse_poles, parse_polynomial, parse_scalar
-from symobs.ground.errors import InexactInput, SymobsError
+from symobs.ground.errors import SymobsError
 from symobs.problem.expect import read_roots, relation
 from symobs.problem.sheet_file import is_sheet
 from tests.kit import tabled
@@ -172,42 +170,6 @@ def test_hostile_files_are_refused(tmp_path: Path, case: str) -> None:
     costly = {"power", "brackets of lists", "digits", "headers", "quotes", "code for an entry", "code for a name"}
     run = fresh if case in costly or case.startswith("dotted") else inside
     assert_refused(solved(tmp_path, text, run), (place, words))
-
-
-# -- the same from Python -------------------------------------------------------------------------------------------
-
-
-def servo() -> symobs.StateSpace:
-    return symobs.StateSpace("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-
-
-FLOATS: dict[str, tuple[Callable[[], object], str, str]] = {
-    "list": (lambda: symobs.StateSpace([[0.5]]), "plant.A[0][0]", "1/2"),
-    "array": (lambda: symobs.StateSpace(np.array([[0.5]])), "plant.A", "1/10"),
-    "array of integers as floats": (lambda: symobs.StateSpace(np.eye(2)), "plant.A", "1/10"),
-    "SymPy": (lambda: symobs.StateSpace(sympy.Matrix([[0.5]])), "plant.A[0][0]", "Rational"),
-    "poles": (lambda: symobs.observer(servo(), poles=[-1, -0.1]), "specification.poles[1]", "-1/10"),
-    "array of poles": (
-        lambda: symobs.observer(servo(), poles=np.array([-0.5, -1])),
-        "specification.poles[0]",
-        "-1/2",
-    ),
-    "complex poles": (
-        lambda: symobs.observer(servo(), poles=[-1 + 0.5j, -1 - 0.5j]),
-        "specification.poles[0]",
-        "-1+0.5j",
-    ),
-    "gain": (lambda: symobs.observer(servo(), L=[[0.25], [1]]), "specification.L[0][0]", "1/4"),
-}
-
-
-@pytest.mark.parametrize("case", FLOATS)
-def test_floats_are_refused_with_what_to_write(case: str) -> None:
-    call, place, repair = FLOATS[case]
-    with pytest.raises(InexactInput) as refused:
-        call()
-    assert refused.value.where == place
-    assert repair in refused.value.repair
 
 
 # -- long texts -----------------------------------------------------------------------------------------------------

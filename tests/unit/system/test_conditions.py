@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import product
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from symobs.exact import Scalar
-from symobs.exact.core.generators import function
+from symobs.formula.expression import parse_scalar
 from symobs.system.conditions import (
     SIGNS,
     Condition,
@@ -23,6 +24,7 @@ from symobs.system.conditions import (
     sign_of,
     vanishing_factors,
 )
+from tests.kit import tables
 from tests.support.algebra import has_sign, random_fraction, seeded, value_at
 from tests.support.problems.strategies import Twin, polynomials, rational_functions
 
@@ -30,7 +32,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 a, b, c = (Scalar.symbol(name) for name in "abc")
-grown = function("exp", a)
 
 ALL = [*SIGNS, "zero"]
 #: Values of each sign, enough to tell the signs apart in sums and products.
@@ -115,50 +116,9 @@ class TestValues:
             if number == 0 and not value.is_zero:
                 assert any(value_at(factor, point) == 0 for factor in factors), (value, signs, point)
 
-    @pytest.mark.parametrize(
-        ("value", "signs", "expected"),
-        [
-            (a - a, {}, "zero"),
-            (Scalar.rational(-2, 3), {}, "negative"),
-            (a, {}, "real"),
-            (a**2, {}, "nonnegative"),
-            (-(a**2) * b**4, {}, "nonpositive"),
-            (a**2 + 1, {}, "positive"),
-            (a**2, {"a": "nonzero"}, "positive"),
-            (-(a**3), {"a": "nonzero"}, "nonzero"),
-            (a * b, {"a": "positive", "b": "negative"}, "negative"),
-            (a + b, {"a": "positive", "b": "nonnegative"}, "positive"),
-            (a + b, {"a": "nonnegative", "b": "nonnegative"}, "nonnegative"),
-            (a - b, {"a": "positive", "b": "positive"}, "real"),
-            (a - b, {"a": "positive", "b": "negative"}, "positive"),
-            (a / b, {"a": "negative", "b": "negative"}, "positive"),
-            (1 / a**2, {"a": "nonzero"}, "positive"),
-            # the terms say nothing, the factors do
-            (a**2 - 2 * a * b + b**2, {}, "nonnegative"),
-            ((a - b) ** 2 * (a + 1), {"a": "positive"}, "nonnegative"),
-            (a * (b - a) ** 2, {"a": "negative"}, "nonpositive"),
-            (a * b * (a + b) - a**2 * b, {"a": "nonzero"}, "real"),
-            ((a + 1) * (b - 2), {"a": "positive", "b": "nonpositive"}, "negative"),
-            # nor do they, the roots do
-            (a**3 - a + 1, {"a": "positive"}, "positive"),
-            (a**3 - a + 1, {"a": "negative"}, "real"),
-            (a**3 - 4 * a + 1, {"a": "positive"}, "real"),
-            (1 - a - a**4 - 2 * a**2, {"a": "nonpositive"}, "real"),
-            (a**4 - 5 * a**2 + 5, {"a": "nonzero"}, "real"),
-            (3 * a - a**2 - 3, {"a": "real"}, "negative"),
-            # an exponential is above 1 where its exponent is positive
-            (grown - 1, {"a": "positive"}, "positive"),
-            (b * grown**2 - b * grown, {"a": "positive", "b": "negative"}, "negative"),
-            (grown - 2, {"a": "positive"}, "real"),
-            (grown - 1, {}, "real"),
-            (1 - grown, {"a": "negative"}, "real"),
-            (a * grown - grown + 1, {"a": "positive"}, "real"),  # it is positive, but no sum of positive terms
-            (function("cos", Scalar.of(2)), {}, "negative"),
-            (function("sin", Scalar.of(2)) - function("cos", Scalar.of(2)), {}, "positive"),
-        ],
-        ids=str,
-    )
-    def test_known_signs(self, value: Scalar, signs: dict[str, str], expected: str) -> None:
+    @pytest.mark.parametrize(("text", "signs", "expected"), tables(Path(__file__))["known_signs"])
+    def test_known_signs(self, text: str, signs: dict[str, str], expected: str) -> None:
+        value = parse_scalar(text, functions=True)
         assert sign_of(value, signs) == expected
         assert never_zero(value, signs) == (expected in {"positive", "negative", "nonzero"})
 

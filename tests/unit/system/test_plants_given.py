@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from fractions import Fraction
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 import sympy
 from sympy.physics.control import Series, TransferFunction
@@ -94,8 +96,18 @@ def test_systems_of_python_control_are_plants() -> None:
         error = SERVO.A - result.L * SERVO.C
         assert (error.trace(), error.det()) == (-3, 2)
         assert "shortest decimals" in text_of(result)
+    assert "shortest decimals" not in text_of(symobs.observer(SERVO, poles=[-1, -2]))
     sampled = symobs.observability(control.tf([1], [1, 0.5], 0.1)).plant
     assert (sampled.A, sampled.dt) == (sympy.Matrix([[-sympy.Rational(1, 2)]]), sympy.Rational(1, 10))
+
+
+@pytest.mark.parametrize("entry", [np.nan, 1j])
+def test_what_is_no_system_of_finite_numbers_is_refused(entry: complex) -> None:
+    one = np.array([[1.0]])
+    with pytest.raises(InputError) as caught:
+        StateSpace.from_control(SimpleNamespace(A=one * entry, B=one, C=one, D=one, dt=0))
+    assert caught.value.where == "plant.A"
+    assert caught.value.repair
 
 
 @pytest.mark.parametrize(

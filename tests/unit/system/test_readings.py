@@ -58,13 +58,9 @@ k, positive_k = Symbol("k"), Symbol("k", positive=True)
     "ask",
     [
         lambda: symobs.StateSpace(sympy.Matrix([[0, one - other], [1, 0]]), C=sympy.Matrix([[1, 0]])),
-        lambda: symobs.StateSpace([[0, one], [1, 0]], C=[[1, other]]),
         lambda: symobs.StateSpace([[0, k], [1, 0]], C=[[1, positive_k]]),
         lambda: symobs.observer(symobs.StateSpace([[0, k], [1, 0]], C=[[1, 0]]), poles=[-1, -positive_k]),
-        lambda: symobs.observer(symobs.StateSpace([[0, k], [1, 0]], C=[[1, 0]]), L=[[positive_k], [1]]),
-        lambda: symobs.gramian(symobs.StateSpace([[0, k], [1, 0]], C=[[1, 0]]), horizon=positive_k),
         lambda: symobs.StateSpace.from_transfer_function(1 / (s * (Dummy("s") + 1))),
-        lambda: symobs.StateSpace("[0 k; 1 0]", symbols={k: "real", positive_k: "positive"}),
         lambda: symobs.StateSpace("[0 k; 1 0]", symbols={k: "real", "k": "positive"}),
     ],
 )

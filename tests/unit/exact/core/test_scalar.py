@@ -6,6 +6,7 @@ import itertools
 import operator
 import pickle
 from math import gcd, prod
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -35,6 +36,7 @@ from symobs.exact.sympy_bridge.conversion import (
     scalar_from_sympy,
     scalar_to_sympy,
 )
+from tests.kit import scalar, tables
 from tests.support.problems.strategies import (
     Twin,
     combined,
@@ -214,27 +216,9 @@ class TestFactors:
         assert sympy.cancel(factored_to_sympy(form, {}) - scalar_to_sympy(value)) == 0
         assert pickle.loads(pickle.dumps(form)) == form  # noqa: S301 - our own bytes
 
-    @pytest.mark.parametrize(
-        "form",
-        [
-            Factored(Scalar.of(1), ()),
-            Factored(Scalar.rational(-1, 2), ()),
-            Factored(Scalar.of(1), ((s, -1),)),
-            Factored(Scalar.of(1), ((s, -1), (s + 1, -2))),
-            Factored(Scalar.of(-1), ((s + 1, 1),)),
-            Factored(Scalar.of(1), ((s + 1, 1), (s, -2))),
-            Factored(Scalar.of(1), ((s + 1, 2), (s - a, -1))),
-            Factored(Scalar.of(1), ((s, -3), (s + 1, 1))),
-            Factored(a + b, ((s + 1, 1),)),
-            Factored(a - b, ((s + 1, -1),)),
-            Factored(-a / (b + 1), ((s + 1, 1), (s + 1 / a, -1))),
-            Factored(1 / (a * b), ((s, 1), (s**2 + a / b, -2))),
-            Factored(Scalar.rational(3, 2), ((s, 2), (s + a, 1))),
-            Factored(Scalar.of(0), ()),
-        ],
-        ids=str,
-    )
-    def test_awkward_forms_are_read_back(self, form: Factored) -> None:
+    @pytest.mark.parametrize(("unit", "factors"), tables(Path(__file__))["awkward_forms"])
+    def test_awkward_forms_are_read_back(self, unit: str, factors: list[tuple[str, int]]) -> None:
+        form = Factored(scalar(unit), tuple((scalar(factor), power) for factor, power in factors))
         assert same(form.value, read_back(str(form)))
 
 

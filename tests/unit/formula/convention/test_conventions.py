@@ -16,7 +16,6 @@ from symobs.formula.convention import convention_named, conventions
 from symobs.formula.convention.convention import ALIASES, read_convention
 from symobs.formula.tree import (
     Apply,
-    Block,
     Environment,
     Exact,
     Formula,
@@ -25,16 +24,14 @@ from symobs.formula.tree import (
     Negative,
     Power,
     Product,
-    Relation,
     SignReversal,
     Sum,
     Transpose,
     evaluate,
 )
-from symobs.ground.errors import DerivationRejected, InputError, ProblemErrors, UsageError
+from symobs.ground.errors import InputError, ProblemErrors, UsageError
 from symobs.problem import parse, read, validate
 from symobs.problem.expect import mismatches
-from symobs.proof.derivation import translated
 from symobs.tasks.result import Document, render
 from tests.kit import tabled, tables
 from tests.support.sampling import every
@@ -153,29 +150,6 @@ def test_a_formula_is_worth_the_same_in_other_signs(formula: Formula, A: Matrix,
         after = Environment(values={"A": A, "K": -K if "K" in names else K, "L": -L})
         turned = SignReversal(names, (L, L.T, K)).whole(formula)
         assert evaluate(turned, after, Exact(after)) == evaluate(formula, before, Exact(before))
-
-
-@given(SQUARE, matrices(2, 2), matrices(2, 2))
-def test_a_true_relation_stays_true(formula: Formula, A: Matrix, L: Matrix) -> None:
-    before = Environment(values={"A": A, "K": A, "L": L})
-    after = Environment(values={"A": A, "K": A, "L": -L})
-    value = Literal(evaluate(formula, before, Exact(before)))
-    for chain in (
-        (formula, value),
-        (Letter("L"), Literal(L), Sum((Literal(L), Block(((Literal(Matrix.zeros(2, 2)),),))))),
-    ):
-        turned = SignReversal(frozenset({"L"}), (L,)).relation(Relation(chain, ("=",) * (len(chain) - 1)))
-        values = {evaluate(member, after, Exact(after)) for member in turned.members}
-        assert len(values) == 1
-
-
-def test_a_translation_that_changes_a_meaning_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
-    (result,) = problem(DESIGN, "standard").solve()
-    monkeypatch.setattr(SignReversal, "relation", lambda _, relation: relation)
-    monkeypatch.setattr(SignReversal, "formula", lambda _, formula: formula)
-    monkeypatch.setattr(SignReversal, "whole", lambda _, formula: formula)
-    with pytest.raises(DerivationRejected, match="in another convention"):
-        translated(result.derivation, convention_named("S1"))
 
 
 # -- a user's own -----------------------------------------------------------------------------------------------------

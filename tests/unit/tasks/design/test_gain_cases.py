@@ -6,6 +6,7 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
+import pytest
 import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -33,6 +34,7 @@ def partly_seen(draw: st.DrawFn) -> tuple[Any, Any]:
     ), C * sympy.Matrix(inverse)
 
 
+@pytest.mark.slow
 @given(partly_seen(), st.sampled_from(["observer", "state_feedback"]), st.data())
 @settings(max_examples=25)
 def test_gains_are_told_at_every_point(plant: tuple[Any, Any], task: str, data: st.DataObject) -> None:
