@@ -18,7 +18,6 @@ from symobs.formula.tree import (
     SignReversal,
     Sum,
     SymbolList,
-    Transpose,
 )
 from symobs.ground.errors import DerivationRejected, UsageError
 from symobs.proof.derivation import (
@@ -250,17 +249,6 @@ def test_data_that_are_equal_to_a_gain_keep_their_sign() -> None:
     assert steps_in(PLUS, plant, L_IS, product)[2] == Define(
         said(Letter("P"), Negative(Product((C, L))), Negative(turned))
     )
-
-
-def test_the_values_of_a_gain_are_what_relations_say_it_is() -> None:
-    def values(*items: Any) -> list[Matrix]:
-        return list(convention_signs._values(said(*items), GAINS))
-
-    assert values(L, GAIN) == [GAIN, GAIN.T]
-    assert values(Transpose(L), GAIN.T) == [GAIN.T, GAIN]
-    assert values(L, A, GAIN, 2 * GAIN) == [GAIN, GAIN.T, 2 * GAIN, 2 * GAIN.T]
-    for items in ((A, GAIN), (Product((L, C)), GAIN), (L, A), (L, 3), (L, Matrix.zeros(2, 1)), (GAIN, L)):
-        assert values(*items) == []
 
 
 def test_the_minus_of_unknown_entries_goes_into_the_matrix_before_them() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -27,7 +28,7 @@ from symobs.formula.tree import (
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation.wording_check import Said, _one_higher, fits
 from symobs.proof.derivation.wording_check import rests as rests_on
-from tests.kit import SERVO, tabled
+from tests.kit import SERVO, tabled, tables
 from tests.support.problems.steps import said
 from tests.support.tampering.mutations import lines_of
 
@@ -225,27 +226,14 @@ def test_other_states_than_those_whose_rows_were_added_are_rejected(sets: tuple[
         replace(result.derivation, steps=tuple(map(changed, result.derivation.steps))).check()
 
 
-CHAIN = "[0 1 0 0 0; 0 0 1 0 0; 0 0 0 1 0; 0 0 0 0 1; 0 0 -12 -4 -3]", "[0; 0; 0; 0; 1]"
-ADVICE: dict[str, Any] = {"settling_time": 2, "overshoot": "1/20"}
-COUNTING: dict[str, tuple[Any, set[str]]] = {
-    "some_on_circle": (lambda: symobs.pole_advice(symobs.StateSpace(*CHAIN, "[2 1 0 0 0]"), radius=10), {"count"}),
-    "one_on_circle": (lambda: symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[2 1]"), radius=10), set()),
-    "one_from_settling": (lambda: symobs.pole_advice(symobs.StateSpace("[1]", "[1]", "[1]"), **ADVICE), set()),
-    "pair_remains": (
-        lambda: symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), **ADVICE),
-        {"count"},
-    ),
-    "pair_dominates": (
-        lambda: symobs.pole_advice(symobs.StateSpace(*CHAIN, "[10 11 1 0 0]"), **ADVICE),
-        {"count", "factor"},
-    ),
-    "crossing": (
-        lambda: symobs.stability_region(
-            symobs.StateSpace("[0 1; -2 -3]", C="[1 0]"), L="[h1; h2]", parameters="h1, h2"
-        ),
-        {"vary"},
-    ),
-}
+COUNTING = tables(Path(__file__))["counting"]
+
+
+def counted(key: str) -> Derivation:
+    """Return a page with a sentence that counts."""
+    task, plant, asked, _ = COUNTING[key]
+    written: Derivation = getattr(symobs, task)(symobs.StateSpace(**plant), **asked).derivation
+    return written
 
 
 def line_saying(key: str, derivation: Derivation) -> tuple[Any, Any]:
@@ -258,8 +246,8 @@ def line_saying(key: str, derivation: Derivation) -> tuple[Any, Any]:
 
 @pytest.mark.parametrize("key", COUNTING)
 def test_what_is_counted_in_words_is_counted_in_the_step(key: str) -> None:
-    asked, counting = COUNTING[key]
-    line, step = line_saying(key, asked().derivation)
+    counting = {*COUNTING[key][-1]}
+    line, step = line_saying(key, counted(key))
     slots = dict(step.sentence.slots)
     assert {name for name, slot in slots.items() if isinstance(slot, Counted)} == counting
     for name in counting:
@@ -271,8 +259,7 @@ def test_what_is_counted_in_words_is_counted_in_the_step(key: str) -> None:
 
 @tabled
 def test_several_poles_are_not_told_as_one(said: str, instead: str) -> None:
-    asked, _ = COUNTING[said]
-    line, step = line_saying(said, asked().derivation)
+    line, step = line_saying(said, counted(said))
     with pytest.raises(DerivationRejected, match="number or equation"):
         line.told(replace(step, sentence=replace(step.sentence, key=instead, slots=()))).check()
 

@@ -2,77 +2,15 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 import sympy
 
 import symobs
 from symobs import StateSpace
-from symobs.exact import Matrix
 from symobs.ground.errors import CertificateRejected, InputError
 from tests.kit import SERVO, tabled, text_of
-from tests.support.algebra import (
-    characteristic,
-    determinant,
-    identity,
-    inverse,
-    matrix_at,
-    multiply,
-    observability_rows,
-    product,
-    rank_of,
-    seeded,
-    subtract,
-    transposed,
-)
-from tests.support.derivations import plus, times
-from tests.support.sampling import FULL
-
-if TYPE_CHECKING:
-    import random
-
-    from tests.support.algebra import Rows
-
-DRAWS = 400 if FULL else 40
-#: order, inputs, outputs
-SIZES = ((2, 1, 1), (3, 1, 2), (3, 2, 1), (3, 2, 2), (4, 2, 2), (4, 1, 3), (4, 2, 3))
-
-
-def drawn(generator: random.Random, rows: int, columns: int, *, sparse: bool = False) -> Rows:
-    entries = (0, 0, 1) if sparse else (-2, -1, 0, 0, 1, 1, 2, 3)
-    return [[Fraction(generator.choice(entries)) for _ in range(columns)] for _ in range(rows)]
-
-
-def plant(generator: random.Random, order: int, inputs: int, outputs: int, *, feedthrough: bool) -> list[Rows]:
-    """Draw a controllable and observable plant whose outputs are independent."""
-    while True:
-        A, B, C = drawn(generator, order, order), drawn(generator, order, inputs), drawn(generator, outputs, order)
-        D = drawn(generator, outputs, inputs) if feedthrough else [[Fraction(0)] * inputs for _ in range(outputs)]
-        seen = rank_of(observability_rows(A, C)) == order == rank_of(observability_rows(transposed(A), transposed(B)))
-        if seen and rank_of(C) == outputs:
-            return [A, B, C, D]
-
-
-def wanted(generator: random.Random, degree: int) -> tuple[list[str], list[Fraction]]:
-    """Draw poles, repeated ones and a complex pair among them, and their polynomial."""
-    poles: list[str] = []
-    factors: list[list[Fraction]] = []
-    while len(poles) < degree:
-        if degree - len(poles) > 1 and generator.random() < 0.3:
-            real, imaginary = generator.randint(1, 4), generator.randint(1, 3)
-            poles += [f"-{real} + {imaginary}i", f"-{real} - {imaginary}i"]
-            factors.append([Fraction(1), Fraction(2 * real), Fraction(real**2 + imaginary**2)])
-        else:
-            real = generator.randint(1, 4)
-            poles.append(f"-{real}")
-            factors.append([Fraction(1), Fraction(real)])
-    return poles, product(factors)
-
-
-def texts(rows: Rows) -> list[list[str]]:
-    return [[str(entry) for entry in row] for row in rows]
 
 
 def test_the_ill_posed_loop_is_refused_with_its_reason() -> None:
@@ -209,32 +147,6 @@ def test_a_compensator_that_is_stable_for_some_parameters_says_for_which() -> No
     found = symobs.compensator(plant, control_poles="-1, -2", observer_poles="-3, -4")
     assert (found.F_stable, list(found.F_stable_if)) == ("conditional", ["a < 10"])
     assert found.at(a=1).F_stable_if is None
-
-
-@pytest.mark.parametrize("size", SIZES, ids=str)
-@pytest.mark.parametrize("time", [0, 1], ids=["continuous", "discrete"])
-def test_a_feedforward_of_the_state_gives_unit_dc_gain(size: tuple[int, int, int], time: int) -> None:
-    """(C − DK)(sI − A + BK)⁻¹BF + DF = I at s = 0, in discrete time at 1, K having placed the poles or being given."""
-    order, inputs, outputs = size
-    for draw in range(max(2, DRAWS // (2 * len(SIZES)))):
-        generator = seeded((size, time, draw, "feedforward"))
-        A, B, C, D = plant(generator, order, inputs, outputs, feedthrough=bool(draw % 2))
-        poles, phi = wanted(generator, order)
-        given = {"K": texts(drawn(generator, inputs, order))} if draw % 3 == 2 else {"control_poles": poles}
-        found = symobs.feedforward(StateSpace(texts(A), texts(B), texts(C), texts(D), dt=bool(time)), **given)
-        assert "L" not in found.fields
-        K = matrix_at(found.loop.answer["K"], {})
-        closed, seen = subtract(A, multiply(B, K)), subtract(C, multiply(D, K))
-        if "K" not in given:
-            assert characteristic(closed) == phi
-        moving = subtract(times(Fraction(time), identity(order)), closed)
-        if found.verdict == "no":
-            gain = determinant(moving) and plus(multiply(multiply(seen, inverse(moving)), B), D)
-            assert not gain or not determinant(multiply(gain, [list(row) for row in zip(*gain, strict=True)]))
-            continue
-        F = found.answer["F"] if isinstance(found.answer["F"], Matrix) else Matrix.of([[found.answer["F"]]])
-        gain = plus(multiply(multiply(seen, inverse(moving)), B), D)
-        assert multiply(gain, matrix_at(F, {})) == identity(outputs)
 
 
 def test_the_feedforward_of_a_state_says_where_the_dc_gain_vanishes() -> None:

@@ -12,6 +12,7 @@ import sympy
 import symobs
 from symobs.ground.errors import InexactInput, InputError, ProblemErrors
 from symobs.problem import read
+from tests.kit import tabled
 from tests.support.paths import ROOT
 
 if TYPE_CHECKING:
@@ -65,43 +66,15 @@ def test_a_gain_that_is_not_unique_is_kept_and_its_page_speaks_of_it() -> None:
     assert "-49" in there.to("text")
 
 
-_s = sympy.Symbol("s")
-
-
-@pytest.mark.parametrize(
-    ("result", "values", "field", "expected"),
-    [
-        (
-            symobs.gramian(symobs.StateSpace("[-a]", None, "[1]"), horizon="T"),
-            {"a": 1, "T": 2},
-            "determinant",
-            (1 - sympy.exp(-4)) / 2,
-        ),
-        (
-            symobs.gramian(symobs.StateSpace("[-1]", None, "[1]")),
-            {"T": 1},
-            "determinant",
-            (1 - sympy.exp(-2)) / 2,
-        ),
-        (
-            symobs.state_feedback(symobs.StateSpace("[0 1; 0 0]", "[0; 1]"), K="[k 2]"),
-            {"k": 5},
-            "polynomial",
-            _s**2 + 2 * _s + 5,
-        ),
-        (symobs.observer(HIDDEN, polynomial="s^2 + q s + 4"), {"q": 4, "c": 0}, "polynomial", _s**2 + 4 * _s + 4),
-        (
-            symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), radius="w"),
-            {"w": 2},
-            "polynomial",
-            symobs.pole_advice(symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), radius=2).polynomial,
-        ),
-    ],
-)
-def test_what_is_asked_for_moves_too(result: Any, values: dict[str, Any], field: str, expected: Any) -> None:
-    there = result.at(values)
+@tabled
+def test_what_is_asked_for_moves_too(
+    task: str, plant: list[str], asked: dict[str, Any], values: dict[str, int], field: str, expected: str
+) -> None:
+    A, B, C = (part or None for part in plant)
+    there = getattr(symobs, task)(symobs.StateSpace(A, B, C), **asked).at(values)
     assert there.symbols == {}
-    assert sympy.simplify(getattr(there, field) - expected) == 0
+    wanted = sympy.sympify(expected)  # noqa: TID251 - texts of this file
+    assert sympy.simplify(getattr(there, field) - wanted) == 0
 
 
 @pytest.mark.parametrize(

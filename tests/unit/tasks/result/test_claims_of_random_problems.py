@@ -6,13 +6,26 @@ The claims are checked in plain fractions, or by mpmath where there are function
 from __future__ import annotations
 
 import random
+from fractions import Fraction
 from typing import Any
 
 import pytest
 
 import symobs
+from symobs.exact import Matrix
 from symobs.tasks.result import tasks
+from tests.support.algebra import (
+    determinant,
+    identity,
+    matrix_at,
+    multiply,
+    plus,
+    response,
+    subtract,
+    transposed,
+)
 from tests.support.claims.claims import HOLDS, Setting
+from tests.support.derivations import times
 from tests.support.sampling import seeds
 
 #: In discrete time their answers are held to recursions by tests of their own.
@@ -74,3 +87,25 @@ def test_the_answer_to_a_random_problem_meets_its_claim(task: str, seed: int) ->
     result = getattr(symobs, task)(plant, **asked)
     assert result.verdict in {"yes", "no"}
     HOLDS[task](result, Setting.of(plant, asked, {}))
+
+
+@pytest.mark.parametrize("seed", seeds(8))
+def test_a_feedforward_of_the_state_gives_unit_dc_gain(seed: int) -> None:
+    """(C − DK)(sI − A + BK)⁻¹BF + DF = I at s = 0, in discrete time at 1, for a K that is given."""
+    chance = random.Random(seed)  # noqa: S311 - repeats
+    plant, _ = drawn("observer", chance)
+    K = [[Fraction(chance.randint(-2, 2)) for _ in range(plant.order)] for _ in range(plant.inputs)]
+    found = symobs.feedforward(plant, K=K)
+    at = Setting.of(plant, {}, {})
+    closed, seen, rest = (
+        subtract(at.A, multiply(at.B, K)),
+        subtract(at.C, multiply(at.D, K)),
+        Fraction(int(at.discrete)),
+    )
+    moves = determinant(subtract(times(rest, identity(plant.order)), closed))
+    gain = plus(response(closed, at.B, seen, rest), at.D) if moves else []
+    if found.verdict == "no":
+        assert not gain or not determinant(multiply(gain, transposed(gain)))
+        return
+    F = found.answer["F"] if isinstance(found.answer["F"], Matrix) else Matrix.of([[found.answer["F"]]])
+    assert multiply(gain, matrix_at(F, {})) == identity(plant.outputs)

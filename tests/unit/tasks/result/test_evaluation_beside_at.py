@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 from fractions import Fraction
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ import sympy
 import symobs
 from symobs.ground.errors import InputError, OutOfBudget
 from symobs.tasks.result import tasks
+from tests.kit import tables
 from tests.support.problems.random_plants import plant_of, specification_of
 from tests.support.sampling import FULL
 
@@ -21,24 +23,7 @@ S = symobs.StateSpace
 #: The letters of random plants that stand in their specification alone.
 VALUES = {"T": Fraction(1), "p": Fraction(2), "q": Fraction(3)}
 #: Results with parameters, with conditions and cases of every kind.
-RESULTS: dict[str, Any] = {
-    "gramian over all time": lambda: symobs.gramian(S("[-a 0; 0 -b]", C="[1 1]"), horizon="inf"),
-    "gramian": lambda: symobs.gramian(S("[-a 0; 0 -b]", C="[1 1]"), horizon="1"),
-    "gramian over steps": lambda: symobs.gramian(S("[a 1; 0 b]", C="[1 b]", dt=True), horizon=1),
-    "zero_order_hold": lambda: symobs.zero_order_hold(S("[0 1; -a -b]", "[0; 1]"), sampling_period="1"),
-    "observability": lambda: symobs.observability(S("[a 1; 0 b]", C="[1 a-b]")),
-    "state_feedback": lambda: symobs.state_feedback(S("[0 1; -2 -3]", "[1; a]"), poles="-b, -5"),
-    "observer of two outputs": lambda: symobs.observer(S("[0 1; a 0]", C="[1 0; b 0]"), poles="-1, -2"),
-    "compensator": lambda: symobs.compensator(
-        S("[0 1; -2 -3]", "[0; 1]", "[1 a]"), control_poles="-b, -5", observer_poles="-6, -7", observer="full"
-    ),
-    "integral_action": lambda: symobs.integral_action(S("[0 1; -2 -b]", "[0; 1]", "[a 1]"), poles="-1, -2, -3"),
-    "reduced_order_observer": lambda: symobs.reduced_order_observer(S("[0 1; a -1]", C="[1 b]"), poles="-3"),
-    "decomposition": lambda: symobs.decomposition(S("[-1 0; 0 a]", "[1; b]", "[1 1]")),
-    "feedforward": lambda: symobs.feedforward(
-        S("[0 1; -2 -3]", "[0; 1]", "[1 a]"), control_poles="-b, -5", observer_poles="-6, -7"
-    ),
-}
+RESULTS: dict[str, tuple[str, dict[str, Any], dict[str, Any]]] = tables(Path(__file__))["results"]
 
 
 def points_of(result: Any, draw: random.Random, count: int) -> list[dict[str, Fraction]]:
@@ -103,7 +88,9 @@ def compare(result: Any, points: list[dict[str, Fraction]], name: str) -> int:
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_every_point_is_what_at_finds_or_nan(name: str) -> None:
-    points = points_of(result := RESULTS[name](), random.Random(name), 24)  # noqa: S311
+    task, plant, asked = RESULTS[name]
+    result = getattr(symobs, task)(S(**plant), **asked)
+    points = points_of(result, random.Random(name), 24)  # noqa: S311
     assert compare(result, points, name) > len(points) / 2
 
 

@@ -25,6 +25,7 @@ from symobs.formula.tree.plain_text import plain_relation
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Derivation, Diagram
 from symobs.proof.derivation.figures_check import equations_of
+from tests.kit import tabled
 
 A, B, C, D, F, G, H, K, L, M, P, Q, T = map(Letter, "ABCDFGHKLMPQT")
 x, x_hat, u, v, y, y_hat, z = (Letter(name) for name in ("x", "x_hat", "u", "v_r", "y", "y_hat", "z_o"))
@@ -99,21 +100,11 @@ def test_two_systems_share_what_lies_between_them() -> None:
         said("estimated_state_feedback", **{**labels, "Observer": deaf})
 
 
-@pytest.mark.parametrize(
-    ("name", "labels", "match"),
-    [
-        ("loop", {"P": P, "F": F}, "no formula for response"),
-        ("loop", {"P": P, "response": T}, "no formula for F"),
-        ("loop", {"P": P, "F": PLANT, "response": T}, "no formula for F"),
-        ("loop", {"P": P, "F": F, "response": T, "Q": Q}, "a label Q, which is not in the figure"),
-        ("loop", {"P": P, "F": F, "response": T, "U": MINUS}, "a label U, which is not in the figure"),
-        ("unity_loop", {"P": P, "F": F, "response": T, "U": P}, "a gain on a wire, where only a sign is drawn"),
-        ("unity_loop", {"P": P, "F": F, "response": T, "U": Negative(P)}, "where only a sign is drawn"),
-        ("unity_loop", {"P": P, "F": F, "response": T}, "no formula for U"),
-        ("observer_closed", {"A": A, "L": L, "u": u, "y": y}, "no formula for x"),
-        ("observer_closed", {"A": A, "L": L, "x": x_hat, "u": u}, "no formula for y"),
-    ],
-)
-def test_what_cannot_be_read_is_refused(name: str, labels: Labels, match: str) -> None:
+SPECIAL = {"a plant": PLANT, "-1": MINUS, "-P": Negative(P), "T": T}
+
+
+@tabled
+def test_what_cannot_be_read_is_refused(name: str, labels: dict[str, str], match: str) -> None:
+    read = {label: SPECIAL.get(formula, Letter(formula)) for label, formula in labels.items()}
     with pytest.raises(ValueError, match=match):
-        said(name, **labels)
+        said(name, **read)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
+from pathlib import Path
 from time import process_time
 from timeit import repeat
 from typing import TYPE_CHECKING
@@ -20,48 +21,23 @@ from symobs.formula.tree import Exact, evaluate
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Plot, plot_check
 from symobs.system import StateSpace
-from tests.kit import SERVO, text_of
+from tests.kit import SERVO, tables, text_of
 from tests.support.derivations import untrue_responses
 from tests.support.tampering.mutations import lines_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from symobs.tasks.result import Result
     from tests.support.tampering.mutations import Line
 
-PAGES: dict[str, Callable[[], Result]] = {
-    "observer": lambda: symobs.observer(SERVO, poles=[-10, -10]),
-    "oscillating": lambda: symobs.observer(SERVO, poles="-1+2i, -1-2i"),
-    "two outputs": lambda: symobs.observer(
-        StateSpace("[0 1 0; 0 0 1; 1 2 3]", None, "[1 0 0; 0 1 1]"), poles=[-1, -2, -3]
-    ),
-    "compensator": lambda: symobs.compensator(SERVO, control_poles=[-2, -2], observer_poles=[-10, -10]),
-    "minimal-order compensator": lambda: symobs.compensator(
-        SERVO, control_poles=[-2, -2], observer_poles=[-10], observer="minimal"
-    ),
-    "reduced-order observer": lambda: symobs.reduced_order_observer(
-        StateSpace("[-7 1 15; -2 0 5; -2 0 4]", "[65; -5; 30]", "[1 0 -2]"), poles=[-5, -6]
-    ),
-}
+PAGES = tables(Path(__file__))["pages"]
 SAMPLED = StateSpace("[1 1; 0 1]", "[1/2; 1]", "[1 0]", dt=True)
-PAGES |= {
-    "deadbeat": lambda: symobs.observer(SAMPLED, poles=[0, 0]),
-    "sampled": lambda: symobs.reduced_order_observer(SAMPLED, poles=["-1/2"]),
-    "sampled compensator": lambda: symobs.compensator(
-        SAMPLED, control_poles="1/2 + i/4, 1/2 - i/4", observer_poles="1/4, 0"
-    ),
-}
-DRIVEN = StateSpace("[0 1; -2 -3]", "[0; 1]", "[1 1]", "[1/2]")
-PAGES |= {
-    "step": lambda: symobs.response(DRIVEN, input=1),
-    "ramp and waves": lambda: symobs.response(DRIVEN, input="t - exp(-t)*sin(2*t)", initial=[1, 0]),
-    "two inputs": lambda: symobs.response(StateSpace("[-1 1; 0 -2]", "[1 0; 0 1]"), input=["cos(t)", 2]),
-    "impulse": lambda: symobs.response(SERVO, impulse=2, initial=[0, 1]),
-    "growth": lambda: symobs.response(StateSpace("[0 1; 1 0]"), initial=[1, 0]),
-}
-PAGES = {name: cache(page) for name, page in PAGES.items()}
-every_page = pytest.mark.parametrize("page", PAGES.values(), ids=PAGES.keys())
+
+
+@cache
+def page(name: str) -> Result:
+    task, plant, asked = PAGES[name]
+    found: Result = getattr(symobs, task)(StateSpace(**plant), **asked)
+    return found
 
 
 def courses(result: Result) -> list[Line]:
@@ -74,9 +50,9 @@ def plots(result: Result) -> list[tuple[Plot, TimeResponse]]:
     return [(line.step, line.step.picture) for line in courses(result)]  # type: ignore[union-attr, misc]
 
 
-@every_page
-def test_courses_are_those_of_another_matrix_exponential(page: Callable[[], Result]) -> None:
-    result = page()
+@pytest.mark.parametrize("name", PAGES)
+def test_courses_are_those_of_another_matrix_exponential(name: str) -> None:
+    result = page(name)
     known = result.derivation.check()
     ((step, picture),) = plots(result)
     value = evaluate(step.subject, known, Exact(known))
@@ -85,15 +61,15 @@ def test_courses_are_those_of_another_matrix_exponential(page: Callable[[], Resu
 
 def test_a_deadbeat_observer_is_dead_after_as_many_instants_as_states() -> None:
     """A - LC = [-1 1; -1 1]: e(0) = (1, 1) is in its kernel, and the square is 0."""
-    ((_, picture),) = plots(PAGES["deadbeat"]())
+    ((_, picture),) = plots(page("deadbeat"))
     assert picture.discrete
     assert [[y for _, y in picture.points(course)] for course in picture.responses] == [[1, 0, 0, 0, 0, 0]] * 2
-    assert "instants 0, 1, 2" in text_of(PAGES["deadbeat"]())
+    assert "instants 0, 1, 2" in text_of(page("deadbeat"))
 
 
 def test_a_spoiled_value_of_discrete_time_is_refused_however_near() -> None:
-    (line,) = courses(PAGES["sampled"]())
-    ((step, picture),) = plots(PAGES["sampled"]())
+    (line,) = courses(page("sampled"))
+    ((step, picture),) = plots(page("sampled"))
     (course,) = picture.responses
     finer = picture.parts * 10**30
     exact = [height * 10**30 for height in course.heights]
