@@ -13,25 +13,15 @@ from symobs.stability.criteria.stability_conditions import is_stable_where, stab
 from symobs.stability.inequalities.decision import sign_cases
 from symobs.stability.inequalities.simplify import solved
 from tests.kit import scalars, tabled
-from tests.support.algebra import has_sign, random_fraction, seeded, value_at
+from tests.support.algebra import has_sign, value_at
+from tests.unit.stability.test_region_proofs import points, positive_at
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable
 
 s, x, y, z, a, b, c = (Scalar.symbol(name) for name in ("s", "x", "y", "z", "a", "b", "c"))
 h1, h2 = Scalar.symbol("h1"), Scalar.symbol("h2")
 AB = {"a": "positive", "b": "positive"}
-
-
-def points(signs: Mapping[str, str], count: int = 200, names: str = "abcxyz") -> list[dict[str, Fraction]]:
-    generator = seeded((signs, names))
-    return [
-        {n: random_fraction(generator, signs.get(n, "real")) / 4 for n in [*names, "h1", "h2"]} for _ in range(count)
-    ]
-
-
-def positive_at(values: Sequence[Scalar], point: Mapping[str, Fraction]) -> bool:
-    return all(value_at(value, point) > 0 for value in values)
 
 
 @tabled

@@ -28,6 +28,7 @@ from tests.support.algebra import (
     seeded,
     value_at,
 )
+from tests.unit.stability.test_region_proofs import positive_at
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -53,10 +54,6 @@ def points(names: Iterable[str], signs: Mapping[str, str], count: int, seed: obj
     return [{n: random_fraction(generator, signs.get(n, "real")) / 4 for n in names} for _ in range(count)]
 
 
-def all_positive(values: Sequence[Scalar], point: Mapping[str, Fraction]) -> bool:
-    return all(value_at(value, point) > 0 for value in values)
-
-
 # -- answers known from elsewhere --------------------------------------------------------------------------------------
 
 #: Coefficients, signs, and the conditions found by QEPCAD, z3 or by hand; each must be > 0.
@@ -68,7 +65,7 @@ def holds_the_same(found: Simplified, expected: Sequence[Scalar], signs: Mapping
     """The same at rational points, and by z3, asked here in its own way, at all points."""
     names = set().union(*(value.names for value in (*found.positive, *expected)))
     for point in points(names, signs, 150, names):
-        assert all_positive(found.positive, point) == all_positive(expected, point), point
+        assert positive_at(found.positive, point) == positive_at(expected, point), point
     z3 = pytest.importorskip("z3")
     solver, symbols = z3.Solver(), {name: z3.Real(name) for name in names}
     solver.set("timeout", 20_000)
@@ -95,7 +92,7 @@ def test_known_regions(text: str, signs: dict[str, str], expected: list[str]) ->
     for value, point in found.witnesses:
         assert all(has_sign(number, signs.get(n, "real")) for n, number in point.items())
         assert not value_at(value, point) > 0
-        assert all_positive([other for other in found.positive if other != value], point)
+        assert positive_at([other for other in found.positive if other != value], point)
 
 
 @pytest.mark.parametrize("name", IN_DISCRETE_TIME)
@@ -122,7 +119,7 @@ def test_the_leading_coefficient_may_vanish() -> None:
         for value in (point["a"], Fraction(0)):
             here = {**point, "a": value}
             stable = value != 0 and is_hurwitz(coefficients_at(a * s**2 + h1 * s + h2, "s", here))
-            assert stable == all_positive(found.positive, here)
+            assert stable == positive_at(found.positive, here)
     assert stable_where((s + h1) / (1 + a**2), "s", {}).positive == (h1,)
     assert stable_where((a * s + h1) / a, "s", {"a": "negative"}).positive == (-h1,)
 
@@ -164,11 +161,11 @@ def test_the_simplified_list_the_raw_lists_and_the_roots_agree(
     for point in points(["a", "b", "h1", "h2", "h3"], signs, 12, seed):
         stable = roots_are_inside(coefficients_at(about, "s", point), discrete=discrete)
         if stable is not None:
-            assert [all_positive(list_, point) for list_ in (found.positive, *raws)] == [stable] * 3, point
+            assert [positive_at(list_, point) for list_ in (found.positive, *raws)] == [stable] * 3, point
     for value, point in found.witnesses:
         assert all(has_sign(number, signs.get(name, "real")) for name, number in point.items())
-        assert all_positive([other for other in found.positive if other != value], point)
-        assert not all_positive([value], point)
+        assert positive_at([other for other in found.positive if other != value], point)
+        assert not positive_at([value], point)
     if found.point is not None:
         filled = {**dict.fromkeys(["a", "b", "h1", "h2", "h3"], Fraction(1)), **found.point}
         assert roots_are_inside(coefficients_at(about, "s", filled), discrete=discrete) is not False

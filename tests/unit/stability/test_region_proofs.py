@@ -5,7 +5,8 @@ from __future__ import annotations
 import ast
 import sys
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import given, settings
@@ -20,7 +21,7 @@ from symobs.stability.inequalities.prover import UNIT, prove, refute
 from symobs.stability.inequalities.sample_points import find_point
 from symobs.stability.inequalities.simplify import simplify
 from symobs.stability.inequalities.z3_backend import QUESTION, Resources, point_by_z3
-from tests.kit import scalar, scalars, tabled
+from tests.kit import scalar, scalars, tabled, tables
 from tests.support.algebra import has_sign, random_fraction, seeded, value_at
 from tests.support.paths import ROOT
 
@@ -146,18 +147,9 @@ def spoiled(step: Step) -> Iterator[Step]:
 
 
 def regions() -> list[tuple[Equivalence, dict[str, str]]]:
-    texts: list[tuple[list[Any], dict[str, str]]] = [
-        ([1, 1 + h1, 2 + h2, 1 + h1 * h2], {}),
-        ([1, h2, 2 + h1, h2, h1], {}),
-        ([1, b + h2, a**2 * (1 - h1)], AB),
-        ([1, h1**2 - 1, 1 - h2**2], {}),
-        ([1, h1, -1 - h1**2, 1 + h2**2], {}),
-        ([a * b, a * h1, b * h1 * h2], {"a": "nonnegative"}),
-        ([1, x * (y + b), x], AB),
-    ]
     return [
-        (stable_where(from_coefficients([Scalar.of(t) for t in text], "s"), "s", signs).equivalence, signs)
-        for text, signs in texts
+        (stable_where(from_coefficients(scalars(coefficients), "s"), "s", signs).equivalence, signs)
+        for coefficients, signs in tables(Path(__file__))["regions"]
     ]
 
 
@@ -227,26 +219,10 @@ def test_lists_made_short(raw: list[str], signs: dict[str, str], expected: list[
 
 # -- decisions -----------------------------------------------------------------------------------------------------------
 
-EMPTY = [
-    [x, -x - y, y],
-    [x**2 - 2, 2 - x**3, x],
-    [-((x - y) ** 2)],
-    [x * y - 1, -x - y, x - 5],
-    [zero],
-    [x, -x],
-]
-NOT_EMPTY = [
-    [x, -1 - x**2 - y],
-    [1 - x**2 - y**2, x + y - 1],
-    [x**2 - 2, x, 3 - x**2],
-    [],
-    [(x - y) ** 2],
-    [x * y - 100],
-]
 
-
-@pytest.mark.parametrize("conditions", EMPTY, ids=str)
-def test_empty_is_proved(conditions: list[Scalar]) -> None:
+@tabled
+def test_empty_is_proved(texts: list[str]) -> None:
+    conditions = scalars(texts)
     found = decide_empty(conditions, {})
     assert found.verdict == "yes"
     assert found.point is None
@@ -255,8 +231,9 @@ def test_empty_is_proved(conditions: list[Scalar]) -> None:
     assert not refutes((), conditions, {}) or zero in conditions
 
 
-@pytest.mark.parametrize("conditions", NOT_EMPTY, ids=str)
-def test_not_empty_has_a_point(conditions: list[Scalar]) -> None:
+@tabled
+def test_not_empty_has_a_point(texts: list[str]) -> None:
+    conditions = scalars(texts)
     found = decide_empty(conditions, {})
     assert found.verdict == "no"
     assert found.point is not None

@@ -134,19 +134,7 @@ def test_every_row_and_every_count_is_found_again(coefficients: list[int]) -> No
 
 # -- the check ------------------------------------------------------------------------------------------------------------
 
-LETTERED: list[list[Any]] = [
-    [1, 2, 3, 1],
-    [1, 1, 2, 2, 3],
-    [1, 2, 24, 48, -25, -50],
-    [1, 0, 2, 0, 1],
-    [3, 1, 0, 0, 5, 2, 7, 1, 2],
-    [1, h1, h2, 1],
-    [1, h1, h2, h3, h4],
-    [1, b, 2 * omega**2, b * omega**2, omega**4],
-    [1, 0, h1, h2],
-    *MISCOUNTED,
-    MISCOUNTED_TWICE[0],
-]
+LETTERED = [*map(scalars, tables(Path(__file__))["lettered"]), *map(whole, [*MISCOUNTED, MISCOUNTED_TWICE[0]])]
 
 
 @pytest.mark.parametrize("coefficients", LETTERED)

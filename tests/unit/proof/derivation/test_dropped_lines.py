@@ -63,20 +63,29 @@ def test_a_bug_of_evaluation_is_no_false_claim(monkeypatch: pytest.MonkeyPatch) 
 ONE, NOTHING = Literal(Scalar.of(1)), Power(Literal(Scalar.of(0)), -1)
 
 
+def page_with_a_case(operator: str, shown: Formula) -> tuple[Builder, Equal]:
+    """Return a page that says in a case of a, against 0, that 1 is what is shown; and that line."""
+    page = Builder(symobs.StateSpace("[a]", "[1]", symbols={"a": "real"}))
+    line = Equal((Relation((ONE, shown), ("=",)),))
+    page.steps.append(CaseStep(relation(page.value(a), operator, 0), (), (line,)))
+    return page, line
+
+
+def only_note(page: Builder) -> Any:
+    """Return the sentence that is left of a page of one case."""
+    (step,) = without_failing_cases(page.derivation()).steps
+    assert isinstance(step, Note)
+    return step.sentence
+
+
 @pytest.mark.parametrize("shown", [Literal(Scalar.of(2)), NOTHING], ids=["false", "unreadable"])
 def test_a_case_whose_check_fails_is_named_as_undecided_and_nothing_else_is(shown: Formula) -> None:
     """The line 1 = 2, or 1 = 1/0, in the case a = 0 is left out with its case; outside a case it stays an error."""
-    page = Builder(symobs.StateSpace("[a]", "[1]", symbols={"a": "real"}))
-    false = Equal((Relation((ONE, shown), ("=",)),))
-    page.steps.append(CaseStep(relation(page.value(a), 0), (), (false,)))
-    written = page.derivation()
+    page, false = page_with_a_case("=", shown)
     with pytest.raises(DerivationRejected):
-        written.check()
+        page.derivation().check()
     with pytest.warns(SymobsWarning, match="a case is left out"):
-        (step,) = without_failing_cases(written).steps
-    assert isinstance(step, Note)
-    assert step.sentence is not None
-    assert step.sentence.key == "undecided_case"
+        assert only_note(page).key == "undecided_case"
     page.steps.append(false)
     with pytest.warns(SymobsWarning), pytest.raises(DerivationRejected):
         without_failing_cases(page.derivation())
@@ -87,25 +96,16 @@ def test_a_case_whose_check_fails_is_named_as_undecided_and_nothing_else_is(show
     [("!=", "undecided_apart", a), (">", "undecided_positive", a), ("<", "undecided_positive", -a)],
 )
 def test_a_case_of_a_sign_is_named_as_undecided_too(operator: str, key: str, named: Scalar) -> None:
-    page = Builder(symobs.StateSpace("[a]", "[1]", symbols={"a": "real"}))
-    false = Equal((Relation((ONE, Literal(Scalar.of(2))), ("=",)),))
-    page.steps.append(CaseStep(relation(page.value(a), operator, 0), (), (false,)))
+    page, _ = page_with_a_case(operator, Literal(Scalar.of(2)))
     with pytest.warns(SymobsWarning, match="a case is left out"):
-        (step,) = without_failing_cases(page.derivation()).steps
-    assert isinstance(step, Note)
-    assert step.sentence is not None
-    assert step.sentence.key == key
-    assert step.sentence.slots == (("when", Literal(named)),)
+        words = only_note(page)
+    assert (words.key, words.slots) == (key, (("when", Literal(named)),))
 
 
 def test_a_case_beyond_the_limits_is_undecided_and_no_bug(monkeypatch: pytest.MonkeyPatch) -> None:
     def too_large(*_: Any) -> Any:
         raise TooLarge("the equations are too long to be decided")
 
-    page = Builder(symobs.StateSpace("[a]", "[1]", symbols={"a": "real"}))
-    page.steps.append(CaseStep(relation(page.value(a), 0), (), (Equal((Relation((ONE, ONE), ("=",)),)),)))
+    page, _ = page_with_a_case("=", ONE)
     monkeypatch.setattr("symobs.proof.derivation.check.on_stratum", too_large)
-    (step,) = without_failing_cases(page.derivation()).steps
-    assert isinstance(step, Note)
-    assert step.sentence is not None
-    assert step.sentence.key == "undecided_case"
+    assert only_note(page).key == "undecided_case"

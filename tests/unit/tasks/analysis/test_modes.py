@@ -74,21 +74,12 @@ def test_a_decomposition_without_output_has_its_cases_and_its_sentences() -> Non
 def test_the_modal_form_is_similar_and_block_diagonal(sample: Sample) -> None:
     plant = plant_of(sample)
     found: Any = symobs.canonical_form(plant, kind="modal")
-    T, n = found.T, sample.order
+    T = found.T
     assert all(sympy.cancel(entry) == 0 for entry in found.A * T - T * plant.A)
     assert sympy.cancel(T.det()) != 0
-    rows = [{i, j} for i in range(n) for j in range(n) if found.A[i, j] != 0]
-    largest = max((len(component) for component in components(n, rows)), default=1)
+    largest = max(map(len, found.A.connected_components()))
     factors = sympy.factor_list(plant.A.charpoly(s).as_expr(), s)[1]
     assert largest <= max(sympy.degree(factor, s) * power for factor, power in factors if factor.has(s))
-
-
-def components(n: int, edges: list[set[int]]) -> list[set[int]]:
-    found = [{i} for i in range(n)]
-    for edge in edges:
-        joined = set().union(*(part for part in found if part & edge))
-        found = [part for part in found if not part & edge] + [joined]
-    return found
 
 
 # -- eigenvalues of every kind -------------------------------------------------------------------------------------------

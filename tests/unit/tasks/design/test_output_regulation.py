@@ -4,29 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import pytest
-from scipy.linalg import expm  # type: ignore[import-untyped]
 
 import symobs
 from symobs.ground.errors import InputError, ShapeMismatch
 from tests.kit import SERVO, text_of
-
-
-def test_the_compensator_follows_in_simulation() -> None:
-    plant = SERVO
-    S, E = "[0 2; -2 0]", "[0 0; 1 0]"
-    design: Any = symobs.output_regulation(
-        plant, S=S, reference="[1 0]", E=E, poles="-2, -3", observer_poles="-2, -3, -4, -5"
-    )
-    K, F, L = (np.array(part.tolist(), dtype=float) for part in (design.K, design.F, design.L))
-    A, B, C = np.array([[0, 1], [0, -1.0]]), np.array([[0], [1.0]]), np.array([[1.0, 0]])
-    generator, driven = np.array([[0, 2.0], [-2, 0]]), np.array([[0, 0], [1.0, 0]])
-    wide, seen = np.block([[A, driven], [np.zeros((2, 2)), generator]]), np.hstack([C, np.zeros((1, 2))])
-    law, entered = np.hstack([-K, F]), np.vstack([B, np.zeros((2, 1))])
-    whole = np.block([[wide, entered @ law], [L @ seen, wide - L @ seen + entered @ law]])
-    state = expm(whole * 12.0) @ np.array([1, -1, 1, 2, 0, 0, 0, 0.0])
-    assert abs(state[0] - state[2]) < 1e-6
 
 
 def test_a_parameter_says_where_a_zero_blocks() -> None:
