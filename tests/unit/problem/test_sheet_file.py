@@ -16,7 +16,7 @@ from symobs.ground.errors import InputError, ProblemErrors
 from symobs.pages.page.blocks import AnswerSpace
 from symobs.problem.sheet_file import PROBLEM, SHEET, is_sheet, read_sheet
 from symobs.problem.sheet_file import schema as sheet_schema
-from tests.kit import tabled
+from tests.kit import tabled, tables
 from tests.support.paths import ROOT
 
 ONE = '[[problem]]\nfile = "one.toml"\n'

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from symobs.exact import Matrix, Scalar, apart_from_zero
-from symobs.formula.tree import Apply, Environment, Identity, Literal, Power, Product, Quotient, Relation
+from symobs.formula.tree import Environment, Identity, Literal, Power, Product, Quotient, Relation
 from symobs.proof.certificate import claims
 from symobs.proof.certificate.claims import verify
 from symobs.proof.certificate.pointwise import never_together_zero
@@ -43,13 +43,6 @@ def test_what_holds_in_general_holds_on_a_stratum(checked: Any) -> None:
     assert checked(equal(Product((Power(matrix([a]), -1), matrix([a]))), Identity(1)), b - 1) == "in general"
 
 
-def test_a_value_whose_denominator_vanishes_on_the_stratum_has_no_meaning_there(checked: Any) -> None:
-    claim = equal(Literal(1 / (a**2 - b)), Literal(1 / (a**2 - b)))
-    assert checked(claim, b - 1) == "in general"
-    assert not checked(claim, a**2 - b)
-    assert not checked(claim, a - 1, b - 1)
-
-
 def test_nothing_is_divided_by_what_vanishes_on_the_stratum(checked: Any) -> None:
     inverse = equal(Product((Power(matrix([a, 1], [b, 1]), -1), matrix([a, 1], [b, 1]))), Identity(2))
     assert checked(inverse, a - 1) == "in general"
@@ -57,22 +50,6 @@ def test_nothing_is_divided_by_what_vanishes_on_the_stratum(checked: Any) -> Non
     quotient = equal(Quotient(Literal(a**2 - a * b), Literal(a - b)), Literal(a))
     assert checked(quotient, a - 1) == "in general"
     assert not checked(quotient, a - b)
-
-
-def test_a_rank_in_general_is_none_on_the_stratum(checked: Any) -> None:
-    rank = equal(Apply("rank", matrix([a, 0], [0, 1])), Literal(Scalar.of(2)))
-    assert checked(rank)
-    assert not checked(rank, a)
-
-
-def test_what_holds_on_the_stratum_only_is_shown_by_its_equations(checked: Any) -> None:
-    claim = equal(Literal(a**2), Literal(b))
-    assert verify(claim, Environment(relations=(a**2 - b,)))[0] == "exact"
-    assert not checked(claim, a - b)
-
-
-def test_an_inequality_in_general_says_nothing_of_a_stratum(checked: Any) -> None:
-    assert not checked(Relation((Literal(a), Literal(Scalar.of(0))), ("!==",)), a)
 
 
 def test_values_meet_a_curve_at_points_that_are_not_real_only() -> None:

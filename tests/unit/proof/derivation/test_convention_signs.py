@@ -15,7 +15,6 @@ from symobs.formula.tree import (
     Letter,
     Negative,
     Product,
-    SignReversal,
     Sum,
     SymbolList,
 )
@@ -230,40 +229,20 @@ def test_unknown_entries_are_called_after_their_letter() -> None:
     assert both == (sought(K, -r1), sought(L, -m1))
 
 
-def test_data_that_are_equal_to_a_gain_keep_their_sign() -> None:
-    plant = Given((said(A, Matrix.of([[0, 1], [-2, -3]])), said(C, Matrix.of([[5, 7]]))), silent=True)
-    written = Product((literal(Matrix.of([[5, 7]])), literal(GAIN)))
-    turned = Product((literal(Matrix.of([[5, 7]])), literal(-GAIN)))
-    product = Define(said(Letter("P"), Product((C, L)), written))
-    found = steps_in(PLUS, plant, L_IS, product)
-    assert found[2] == Define(said(Letter("P"), Negative(Product((C, L))), written))
-    (other,) = sign_translation.in_signs((product,), SignReversal(frozenset({"L"}), {GAIN}))
-    assert other == Define(said(Letter("P"), Negative(Product((C, L))), Negative(turned)))
-    scalar = Define(said(Letter("D"), 3))
-    assert steps_in(PLUS, plant, scalar, L_IS)[1] == scalar
-    # Where no data are equal to it the gain that is written out is the new one.
-    plant = Given((said(A, Matrix.of([[0, 1], [-2, -3]])), said(C, Matrix.of([[5, 8]]))), silent=True)
-    written = Product((literal(Matrix.of([[5, 8]])), literal(GAIN)))
-    product = Define(said(Letter("P"), Product((C, L)), written))
-    turned = Product((literal(Matrix.of([[5, 8]])), literal(-GAIN)))
-    assert steps_in(PLUS, plant, L_IS, product)[2] == Define(
-        said(Letter("P"), Negative(Product((C, L))), Negative(turned))
-    )
+@pytest.mark.parametrize(("row", "is_gain"), [([5, 7], False), ([5, 8], True)])
+def test_data_that_are_equal_to_a_gain_keep_their_sign(row: list[int], is_gain: bool) -> None:  # noqa: FBT001
+    """Where no data are equal to it the gain that is written out is the new one."""
+    plant = Given((said(A, Matrix.of([[0, 1], [-2, -3]])), said(C, Matrix.of([row]))), silent=True)
+    written, turned = (Product((literal(Matrix.of([row])), literal(gain))) for gain in (GAIN, -GAIN))
+    found = steps_in(PLUS, plant, L_IS, Define(said(Letter("P"), Product((C, L)), written)))
+    expected = Negative(turned) if is_gain else written
+    assert found[2] == Define(said(Letter("P"), Negative(Product((C, L))), expected))
 
 
 def test_the_minus_of_unknown_entries_goes_into_the_matrix_before_them() -> None:
-    def replaced(item: Formula) -> Any:
-        return sign_translation._substituted(item, {"l1": -m1, "l2": -m2})
+    def replaced(entry: Scalar) -> Any:
+        product = Product((literal(Matrix.of([[1, 2]])), literal(Matrix.column([l1, entry]))))
+        return sign_translation._substituted(product, {"l1": -m1, "l2": -m2})
 
-    table, minus = literal(Matrix.of([[1, 2]])), literal(Matrix.of([[-1, -2]]))
-    assert replaced(Product((table, literal(Matrix.column([l1, l2]))))) == Product(
-        (minus, literal(Matrix.column([m1, m2])))
-    )
-    mixed = Product((table, literal(Matrix.column([l1, a]))))
-    assert replaced(mixed) == Product((table, literal(Matrix.column([-m1, a]))))
-    doubled = Product((table, literal(Matrix.column([2 * l1, l2]))))
-    assert replaced(doubled) == Product((table, literal(Matrix.column([-2 * m1, -m2]))))
-    as_given = Product((table, literal(Matrix.column([-a, -k1]))))
-    assert replaced(as_given) is as_given
-    three = Product((A, table, literal(Matrix.column([l1, l2]))))
-    assert replaced(three) == Product((A, table, literal(Matrix.column([-m1, -m2]))))
+    assert replaced(l2) == Product((literal(Matrix.of([[-1, -2]])), literal(Matrix.column([m1, m2]))))
+    assert replaced(a) == Product((literal(Matrix.of([[1, 2]])), literal(Matrix.column([-m1, a]))))

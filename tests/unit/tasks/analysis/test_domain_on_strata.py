@@ -6,10 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import symobs
 from symobs import StateSpace, compensator, controllability, state_feedback
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Scalar
 from symobs.exact.core.generators import square_root
-from symobs.formula.tree import Apply, Environment, Literal, Relation
-from symobs.proof.certificate.claims import verify
 from symobs.proof.certificate.pointwise import never_together_zero
 from tests.kit import tabled
 
@@ -40,20 +38,6 @@ def test_the_page_of_a_gain_holds_on_such_a_curve() -> None:
     assert "k**2" in str(state_feedback(plant, poles=[-1, -2]).conditions)
     state_feedback(plant, poles=[-1, -2]).derivation.check()
     compensator(plant, control_poles=[-3, -1], observer_poles=[-3], observer="minimal").derivation.check()
-
-
-def test_a_rank_is_shown_by_minors_where_the_kernel_found_vanishes_somewhere() -> None:
-    """On a d = b c, [-b; a] is a kernel of [a b; c d], and 0 where a = b = 0; with c = 1 the rank is 1 there too."""
-    a, b, d = (Scalar.symbol(name) for name in "abd")
-    here = Environment(relations=(a * d - b,))
-    for matrix, says, holds in (
-        (Matrix.of([[a, b], [Scalar.of(1), d]]), 1, True),
-        (Matrix.of([[a, b], [Scalar.of(1), d]]), 2, False),
-        (Matrix.of([[a, b], [a, b]]), 1, False),  # 0 at a = b = 0
-        (Matrix.of([[a, b, b], [a, b, b], [Scalar.of(1), d, d]]), 1, True),
-    ):
-        relation = Relation((Apply("rank", Literal(matrix)), Literal(Scalar.of(says))), ("=",))
-        assert (verify(relation, here)[0] == "exact") is holds
 
 
 def test_the_page_of_a_long_stratum_holds() -> None:

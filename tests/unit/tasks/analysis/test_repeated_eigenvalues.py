@@ -19,7 +19,6 @@ from hypothesis import strategies as st
 
 import symobs
 from symobs.exact import EIGENVALUE, Scalar
-from symobs.exact import ideals as ideal
 from symobs.formula.tree import Conjunction, Environment
 from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.proof.certificate.claims import verify
@@ -184,23 +183,6 @@ def test_a_drop_on_several_equations_is_excluded_as_one() -> None:
     # The first of them alone was given as the condition: a ≠ 0, though (0, b) sees the mode as well.
     found = symobs.detectability(symobs.StateSpace("[1]", None, "[a; b]"))
     assert [str(c) for c in found.holds_where] == ["a**2 + b**2 != 0"]
-
-
-@pytest.mark.parametrize("meaning", ["asymptotic", "lyapunov"])
-def test_no_limit_leaves_a_verdict_as_an_exception(monkeypatch: pytest.MonkeyPatch, meaning: str) -> None:
-    plants = [
-        symobs.StateSpace("[0 a 0; 0 b^2-a 0; 0 a b]", None, "[0 b a+b]"),
-        symobs.StateSpace("[0 a; 0 b]", None, "[0 0]"),
-    ]
-    monkeypatch.setattr(ideal, "TERMS", 1)
-    ideal._ideal.cache_clear()
-    for plant in plants:
-        found = symobs.detectability(plant, meaning=meaning)
-        assert found.verdict in {"no", "conditional", "undecided"}
-        _ = found.conditions, found.cases, found.grows_where
-        endless = symobs.gramian(plant, horizon="inf")
-        assert endless.verdict in {"yes", "no", "conditional", "undecided"}
-        _ = endless.conditions, endless.cases
 
 
 # -- the claims ----------------------------------------------------------------------------------------------------------

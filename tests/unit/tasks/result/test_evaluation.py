@@ -22,15 +22,6 @@ def exactly(matrix: Any, **values: float) -> Any:
     return np.array(matrix.subs(numbers)).astype(float)
 
 
-def test_where_a_condition_fails_there_stands_what_holds_in_that_case() -> None:
-    """At c = 1/2 the mode −2 is unobservable, at c = 1 the mode −1: with k = 2, or k = 1, it is among the desired poles."""
-    result = symobs.observer(HIDDEN, poles="-k, -5")
-    found = result.evaluate({"c": [0.5, 0.5, 1, 1, 0.1], "k": [7, 2, 7, 1, 3]})["L"][..., 0]
-    assert np.isnan(found[[0, 2]]).all()
-    for index, (c, k) in {1: ("1/2", 2), 3: (1, 1), 4: ("1/10", 3)}.items():
-        np.testing.assert_allclose(found[index], np.array(result.at(c=c, k=k).L).astype(float)[:, 0], rtol=1e-12)
-
-
 def test_beside_a_condition_the_value_is_exact() -> None:
     result = symobs.observer(HIDDEN, poles="-1, -5")
     for places in range(8, 17):

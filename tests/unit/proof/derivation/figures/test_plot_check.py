@@ -211,24 +211,23 @@ def sampled(*values: int, signal: str = "x", component: int = 0, row: tuple[int,
     return PlottedResponse(signal, component, tuple(map(Fraction, row)), tuple(2 * value for value in values))
 
 
+FIRST, SECOND = sampled(1, 3, 5, 11, component=1), sampled(1, -1, 1, -1, component=2, row=(0, 1))
+OUTPUT = sampled(4, 0, 8, 8, signal="y", row=(1, 3))
+
+
 def test_courses_of_discrete_time_are_met_exactly() -> None:
-    first = sampled(1, 3, 5, 11, component=1)
-    second = sampled(1, -1, 1, -1, component=2, row=(0, 1))
-    output = sampled(4, 0, 8, 8, signal="y", row=(1, 3))
-    assert samples(first, second) == samples(output) == samples(first, second, output) == []
-    assert samples(output, low="0", high="8") == []
-    for low, high in (("1/2", "8"), ("0", "15/2")):
-        assert samples(output, low=low, high=high) == ["y, which leaves the window,"]
-    assert samples(output, second, first, low="-1/2") == ["x, which leaves the window,"]
-    for end in (2, 4):
-        assert samples(output, end=end) == ["instants other than 0, 1, 2, ..."]
-        assert samples(replace(output, heights=(0, 0, 0, 0)), end=end) == ["instants other than 0, 1, 2, ..."]
+    assert samples(FIRST, SECOND) == samples(OUTPUT) == samples(FIRST, SECOND, OUTPUT) == []
     for place in range(4):
         for off in (1, -1):  # half of one is seen
-            heights = [height + off * (k == place) for k, height in enumerate(output.heights)]
-            assert samples(replace(output, heights=tuple(heights))) == ["the response of y"]
-    assert samples(output, count=3) == ["the response of y"]
-    assert samples(second, first, replace(output, heights=(8, 0, 16, 17))) == ["the response of y"]
+            heights = [height + off * (k == place) for k, height in enumerate(OUTPUT.heights)]
+            assert samples(replace(OUTPUT, heights=tuple(heights))) == ["the response of y"]
+    assert samples(SECOND, FIRST, replace(OUTPUT, heights=(8, 0, 16, 17))) == ["the response of y"]
+    assert samples(OUTPUT, SECOND, FIRST, low="-1/2") == ["x, which leaves the window,"]
+
+
+@tabled
+def test_a_window_of_discrete_time_is_filled(ways: dict[str, Any], faults: list[str]) -> None:
+    assert samples(OUTPUT, **ways) == faults
 
 
 def test_courses_are_of_the_time_of_their_plant() -> None:
