@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pickle
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 import sympy
@@ -38,9 +38,6 @@ from tests.support.problems.strategies import (
     rational_functions,
     twin_number,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 a, b, s = (Scalar.symbol(name) for name in "abs")
 Pair = tuple[Matrix, Any]
@@ -303,15 +300,11 @@ class TestModularPoints:
 
     def test_a_vanishing_denominator_is_told(self) -> None:
         point = Point(("a",), seeded(1))
-        for attempt in vanishing(point):
+        value = 1 / (a - point.values["a"])
+        for read, vanishing in ((point.scalar, value), (point.matrix, Matrix.of([[value]]))):
             with pytest.raises(VanishingDenominator):
-                attempt()
+                read(vanishing)
         assert point.scalar(twin_number(Fraction(1, 3)).scalar) * 3 % point.prime == 1
-
-
-def vanishing(point: Point) -> list[Callable[[], object]]:
-    value = 1 / (a - point.values["a"])
-    return [lambda: point.scalar(value), lambda: point.matrix(Matrix.of([[value]]))]
 
 
 def residue(number: Fraction, prime: int) -> int:

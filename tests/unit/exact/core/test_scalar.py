@@ -89,9 +89,6 @@ class TestField:
         assert (RATIONALS | joined) is joined
         assert (joined | RATIONALS) is joined
 
-    def test_a_field_pickles_to_itself(self) -> None:
-        assert pickle.loads(pickle.dumps(Field.of("ab"))) is Field.of("ab")  # noqa: S301 - our own bytes
-
 
 class TestScalars:
     @given(rational_functions(), rational_functions())

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import re
 from fractions import Fraction
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -15,14 +14,13 @@ from hypothesis import strategies as st
 from symobs.formula.expression import parse_matrix, parse_scalar, tokenizer
 from symobs.formula.expression.names import Scope
 from symobs.formula.expression.source import Source, Token
-from symobs.formula.expression.syntax import every, operands_first, parse
+from symobs.formula.expression.syntax import every, parse
 from symobs.ground.errors import InputError
-from tests.kit import tabled, tables
+from tests.kit import tabled
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-PIECES = tables(Path(__file__))["pieces"]
 MOST = 10**6
 OPERATIONS: dict[type, Callable[[Fraction, Fraction], Fraction]] = {
     ast.Add: lambda a, b: a + b,
@@ -84,27 +82,6 @@ def tokens_of(text: str) -> list[Token] | None:
         return tokenizer.Tokeniser(Source(text, ""), Scope.of(None, None, "")).run()
     except InputError:
         return None
-
-
-@given(st.lists(st.sampled_from(PIECES), min_size=1, max_size=14).map("".join))
-@example("[1 -2; a, (b + 1)^2]*3")
-@example("a^-2^3*b")
-def test_a_tree_has_every_operand_in_its_place_or_its_fault(text: str) -> None:
-    made = tokens_of(text)
-    if made is None:
-        return
-    operands = [token.start for token in made if token.type == "VALUE"]
-    try:
-        found = parse(made, Source(text, ""))
-    except InputError:
-        return
-    leaves = [part for entry in found for part in every(entry) if part.kind == "number"]
-    assert [leaf.places[0] for leaf in leaves] == operands
-    for entry in found:
-        assert set(operands_first(entry)) == set(every(entry))
-        for part in every(entry):
-            wanted = len(part.parts) - 1 if part.kind in {"sum", "product"} else 1
-            assert part.kind == "row" or len(part.places) == wanted
 
 
 @tabled

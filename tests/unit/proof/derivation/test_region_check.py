@@ -161,38 +161,36 @@ def test_a_region_that_is_not_proved_is_not_told(monkeypatch: pytest.MonkeyPatch
     assert not is_survey(replace(step, parts=()), s + h, IN_S, discrete=False)
 
 
-def test_what_is_known_by_inequalities_only() -> None:
-    names = ("h", "k", "m")
+BOX = (s + h) * (s + k) * (s + m)
 
-    def said_of(polynomial: Scalar, known: Environment = IN_S) -> list[str]:
-        told = findings_of_conditions(polynomial, known, names, discrete=known.variable == "z")
-        return [sentence.key for sentence in told]
 
-    open_box = (s + h) * (s + k) * (s + m)
-    assert said_of(open_box) == ["box_unbounded"]
-    assert said_of((s - 1) * open_box) == ["region_empty"]
-    assert said_of((s + h - m) * (s + k) * (s + h + m)) == []
-    closed = (s + h) * (s + 1 - h) * (s + k) * (s + 2 - k) * (s + m) * (s + 3 - m)
-    assert said_of(closed) == ["box_bounded"]
-    bound = Scalar.symbol("b")
-    assert said_of((s + h) * (s + bound - h) * (s + k) * (s + m)) == []  # there is such an h only where b > 0
-    assert said_of((s + h) * (s + k) * (s + m), Environment(signs=dict.fromkeys(names, "positive"))) == []
-    assert said_of((z + h) * (z + k) * (z + m), Environment(variable="z")) == ["box_bounded"]
-    step = RegionSummary(CHI, names, (Sentence("box_unbounded"),))
-    assert is_survey(replace(step, findings=()), open_box, IN_S, discrete=False) is False
-    assert is_survey(step, open_box, IN_S, discrete=False)
+def said_of(polynomial: Scalar, known: Environment = IN_S) -> list[str]:
+    told = findings_of_conditions(polynomial, known, ("h", "k", "m"), discrete=known.variable == "z")
+    return [sentence.key for sentence in told]
+
+
+@tabled
+def test_what_is_known_by_inequalities_only(polynomial: str, signs: dict[str, str], keys: list[str]) -> None:
+    variable = "z" if "z" in polynomial else "s"
+    assert said_of(scalar(polynomial), Environment(variable=variable, signs=signs)) == keys
+
+
+def test_no_other_sentence_is_said_of_a_box() -> None:
+    step = RegionSummary(CHI, ("h", "k", "m"), (Sentence("box_unbounded"),))
+    assert is_survey(step, BOX, IN_S, discrete=False)
     for findings in (
         (),
         (Sentence("box_bounded"),),
         (Sentence("region_empty"),),
         (*step.findings, Sentence("region_empty")),
     ):
-        assert not is_survey(replace(step, findings=findings), open_box, IN_S, discrete=False)
-    assert not is_survey(replace(step, parts=((said(h, ">", 0),),)), open_box, IN_S, discrete=False)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(region_check, "is_stable_where", lambda *_, **__: False)
-        assert said_of(open_box) == []
-        assert said_of((s - 1) * open_box) == []
+        assert not is_survey(replace(step, findings=findings), BOX, IN_S, discrete=False)
+    assert not is_survey(replace(step, parts=((said(h, ">", 0),),)), BOX, IN_S, discrete=False)
+
+
+def test_what_is_not_proved_by_inequalities_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(region_check, "is_stable_where", lambda *_, **__: False)
+    assert said_of(BOX) == said_of((s - 1) * BOX) == []
 
 
 @tabled

@@ -231,15 +231,3 @@ def test_a_page_that_tells_a_rank_without_its_condition_is_rejected() -> None:
     assert steps != written.steps
     with pytest.raises(DerivationRejected, match="rank"):
         Derivation(steps, written.start, written.symbols, written.discrete).check()
-
-
-def test_a_case_that_cannot_be_is_rejected() -> None:
-    written: Derivation = symobs.pbh(symobs.StateSpace("[a 0; 0 -1]", None, "[1 0]")).derivation
-
-    def impossible(when: Any) -> Any:
-        return (
-            Conjunction((*when.relations, relation(Scalar.of(0), "!=", 0))) if isinstance(when, Conjunction) else when
-        )
-
-    with pytest.raises(DerivationRejected, match="can be"):
-        Derivation(_with_cases(written.steps, impossible), written.start, written.symbols, written.discrete).check()

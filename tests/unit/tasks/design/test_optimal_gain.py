@@ -212,23 +212,12 @@ def test_a_root_on_the_circle_is_excluded_where_its_mirror_image_is_one() -> Non
     assert there["Eq(q, 0)", "Eq(a - 1, 0)"].verdict == "no"
 
 
-def test_an_obstacle_is_named() -> None:
-    unmoved: Any = symobs.lqr(symobs.StateSpace("[1 0; 0 -1]", "[0; 1]"), Q="1", R="1")
-    unseen: Any = symobs.lqr(symobs.StateSpace("[0 1; -4 0]", "[0; 1]"), Q="0", R="1")
-    seen: Any = symobs.lqr(symobs.StateSpace("[0 1; -4 0]", "[0; 1]"), Q="[0 0; 0 1]", R="1")
-    on_circle: Any = symobs.lqr(symobs.StateSpace("[-1 0; 0 2]", "[1; 1]", dt=1), Q="[0 0; 0 1]", R="1")
-    assert [result.verdict for result in (unmoved, unseen, seen, on_circle)] == ["no", "no", "yes", "no"]
-    assert [sorted(map(str, result.modes)) for result in (unmoved, unseen, on_circle)] == [
-        ["1"],
-        ["-2*I", "2*I"],
-        ["-1"],
-    ]
-    hidden: Any = symobs.kalman(symobs.StateSpace("[1 0; 0 -1]", None, "[0 1]"), W="1", V="1")
-    undriven: Any = symobs.kalman(symobs.StateSpace("[0 1; 0 0]", None, "[1 0]"), W="1", V="1", G="[1; 0]")
-    for result in (unmoved, unseen, on_circle, hidden, undriven):
-        assert result.verdict == "no"
-        assert result.K is None if result.task == "lqr" else result.L is None
-        result.to("text")
+@tabled
+def test_an_obstacle_is_named(task: str, plant: dict[str, Any], weights: dict[str, str], modes: list[str]) -> None:
+    found: Any = getattr(symobs, task)(symobs.StateSpace(**plant), **weights)
+    assert (found.verdict, found.K if task == "lqr" else found.L) == ("no", None)
+    assert sorted(map(str, found.modes)) == modes
+    assert found.to("text")
 
 
 def test_lies_are_rejected() -> None:

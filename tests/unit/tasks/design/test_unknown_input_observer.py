@@ -74,16 +74,10 @@ def test_many_special_cases_are_the_rows_of_one_table() -> None:
 LETTERS = dict.fromkeys(("a", "b", "p"), "real")
 
 
-@pytest.mark.parametrize(
-    ("plant", "E", "poles"),
-    [
-        (symobs.StateSpace("[0 1; (-exp(a)^2-1)/(2*exp(a)) 0]", C="[1 0]", symbols=LETTERS), "[0; 0]", "-p, -2*p"),
-        (symobs.StateSpace("[0]", C="[cos(b)]", symbols=LETTERS), "[a]", "-1"),  # two equations say where cos b = 0
-        (symobs.StateSpace("[b^2 -a; -1 -a]", C="[b^2 a-b; 0 a+1]", symbols=LETTERS), "[1; a]", "-1, -2"),
-    ],
-)
-def test_a_page_has_all_cases(plant: symobs.StateSpace, E: str, poles: str) -> None:
+@tabled
+def test_a_page_has_all_cases(A: str, C: str, E: str, poles: str) -> None:
     """Beside a gain in letters, on strata of several equations, and where an outer case has lost F."""
+    plant = symobs.StateSpace(A, C=C, symbols=LETTERS)
     assert "not decided here" not in text_of(symobs.unknown_input_observer(plant, E=E, poles=poles))
 
 

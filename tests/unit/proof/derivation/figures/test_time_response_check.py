@@ -8,7 +8,7 @@ from functools import cache, partial
 from pathlib import Path
 from time import process_time
 from timeit import repeat
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import mpmath
 import pytest
@@ -21,7 +21,7 @@ from symobs.formula.tree import Exact, evaluate
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import Plot, plot_check
 from symobs.system import StateSpace
-from tests.kit import SERVO, tables, text_of
+from tests.kit import tabled, tables, text_of
 from tests.support.derivations import untrue_responses
 from tests.support.tampering.mutations import lines_of
 
@@ -81,17 +81,12 @@ def test_a_spoiled_value_of_discrete_time_is_refused_however_near() -> None:
         line.told(replace(step, picture=replace(picture, discrete=False))).check()
 
 
-def test_a_picture_is_left_out_where_it_would_show_nothing() -> None:
-    parametric = StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 0]")
-    assert plots(symobs.observer(parametric, poles=[-1, -2])) == []
-    assert plots(symobs.observer(SERVO, poles=["-p", "-q"])) == []
-    assert plots(symobs.observer(SAMPLED, poles="9/10, 1/2")) == []  # it takes too long
-    assert plots(symobs.observer(SAMPLED, poles="1, 1/2")) == []
-    assert plots(symobs.observer(SAMPLED, poles="p, q")) == []
-    assert plots(symobs.observer(SERVO, poles=[-1, -16])) == []  # the fast mode would be a vertical line
-    assert plots(symobs.observer(SERVO, poles=[-1, -15])) != []
-    assert plots(symobs.observer(SERVO, poles=[0, -1])) == []  # nothing converges
-    assert plots(symobs.observer(SERVO, poles=[1, -1])) == []
+@tabled
+def test_a_picture_is_left_out_where_it_would_show_nothing(
+    plant: dict[str, Any], poles: str, *, is_drawn: bool
+) -> None:
+    """With parameters, too slow, too fast beside the others, or where nothing converges."""
+    assert bool(plots(symobs.observer(StateSpace(**plant), poles=poles))) is is_drawn
 
 
 # -- what is refused --------------------------------------------------------------------------------------------------
