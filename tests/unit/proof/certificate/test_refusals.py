@@ -116,17 +116,6 @@ def test_what_points_cannot_decide_is_decided_exactly() -> None:
     assert verify(said(a, "=", a, "!==", a), names) == FALSE
 
 
-def test_with_named_coefficients_what_holds_for_all_is_tried_first() -> None:
-    named = Environment(coefficients={"d": a + 1})
-    assert verify(said(d * d, Product((literal(d), literal(d)))), named) == EXACTLY
-    assert is_at_points(said(d, a + 1), named)
-    assert verify(said(d, a), named) == FALSE
-    assert verify(said(d, "!==", a + 1), named) == FALSE
-    assert is_at_points(said(d, "!==", a), named)
-    assert verify(said(d, "!=", 0), named) == FALSE
-    assert verify(said(d**2 + 1, "!=", 0), named) == EXACTLY
-
-
 @pytest.mark.usefixtures("at_points")
 def test_what_varies_in_time_needs_values() -> None:
     square = Literal(t * t)

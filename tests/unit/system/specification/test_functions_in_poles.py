@@ -2,65 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from pathlib import Path
 from random import Random
-from typing import Any
 
 import numpy as np
 import pytest
+import sympy
 
 import symobs
 from symobs.ground.errors import InputError
-from tests.kit import tabled
+from tests.kit import tabled, tables
 
 SERVO = ("[0 1; 0 -1]", "[0; 1]", "[1 0]")
-SAMPLED = ("[1 1-exp(-T); 0 exp(-T)]", "[T-1+exp(-T); 1-exp(-T)]", "[1 0]")
-PAIR = "-a*cos(theta) + a*sin(theta)*i, -a*cos(theta) - a*sin(theta)*i"
-SPIRAL = "exp(-a*T)*cos(theta) + i*exp(-a*T)*sin(theta), exp(-a*T)*cos(theta) - i*exp(-a*T)*sin(theta)"
-Wanted = Callable[[float, float, float], Any]
-#: What is asked for, and the polynomial that it means at values of T, a and theta.
-ASKED: dict[str, tuple[symobs.StateSpace, dict[str, str], Wanted]] = {
-    "pair": (symobs.StateSpace(*SERVO), {"poles": PAIR}, lambda _, a, theta: [1, 2 * a * np.cos(theta), a**2]),
-    "root of a function": (
-        symobs.StateSpace(*SERVO),
-        {"poles": "-1 + i*sqrt(cosh(a)), -1 - i*sqrt(cosh(a))"},
-        lambda _, a, __: [1, 2, 1 + np.cosh(a)],
-    ),
-    "numbers": (symobs.StateSpace(*SERVO), {"poles": "-2^(1/3), -pi"}, lambda *_: np.poly([-(2 ** (1 / 3)), -np.pi])),
-    "sampled": (
-        symobs.StateSpace(*SAMPLED, dt=True),
-        {"poles": "exp(-T), exp(-2*T)"},
-        lambda T, *_: np.poly([np.exp(-T), np.exp(-2 * T)]),
-    ),
-    "spiral": (
-        symobs.StateSpace(*SAMPLED, dt=True),
-        {"poles": SPIRAL},
-        lambda T, a, theta: [1, -2 * np.exp(-a * T) * np.cos(theta), np.exp(-2 * a * T)],
-    ),
-    "finer angle": (
-        symobs.StateSpace("[0 1; -sin(2*theta) 0]", "[0; 1]", "[1 0]"),
-        {"polynomial": "s^2 + 2 cos(theta) s + a^2"},
-        lambda _, a, theta: [1, 2 * np.cos(theta), a**2],
-    ),
-    "multiple angle": (
-        symobs.StateSpace(*SERVO),
-        {"polynomial": "s^2 + 2 a cos(3 theta) s + 3^(1/3)"},
-        lambda _, a, theta: [1, 2 * a * np.cos(3 * theta), 3 ** (1 / 3)],
-    ),
-}
+#: What is asked for, and the coefficients that it means, at values of T, a and theta.
+ASKED = tables(Path(__file__))["asked"]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ASKED)
 def test_both_gains_place_the_poles_at_values_of_the_parameters(name: str) -> None:
-    system, asked, wanted = ASKED[name]
+    plant, asked, wanted = ASKED[name]
+    system = symobs.StateSpace(**plant)
+    polynomial = sympy.Matrix([sympy.sympify(text) for text in wanted])  # noqa: TID251 - texts of this file
     observer, feedback = symobs.observer(system, **asked), symobs.state_feedback(system, **asked)
     random = Random(name)  # noqa: S311 - test data
     for _ in range(3):
         point = {letter: random.uniform(0.2, 1.2) for letter in ("T", "a", "theta")}
         values = (part.subs(point).evalf() for part in (system.A, system.B, system.C, feedback.K, observer.L))
         A, B, C, K, L = (np.array(value, dtype=float) for value in values)
-        expected = pytest.approx(np.array(wanted(*point.values()), dtype=float), rel=1e-8)
+        expected = pytest.approx(np.array(polynomial.subs(point).evalf(), dtype=float)[:, 0], rel=1e-8)
         assert np.poly(A - B @ K) == expected
         assert np.poly(A - L @ C) == expected
     if name != "spiral":

@@ -18,12 +18,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symobs
-from symobs.exact import EIGENVALUE, Scalar
-from symobs.formula.tree import Conjunction, Environment
+from symobs.exact import Scalar
+from symobs.formula.tree import Conjunction
 from symobs.ground.errors import CertificateRejected, DerivationRejected
-from symobs.proof.certificate.claims import verify
 from symobs.proof.derivation import CaseStep, Derivation, Section
-from symobs.proof.derivation.builder import relation
 from tests.kit import tabled, text_of
 from tests.programs.campaign.points import answer_at
 from tests.support.algebra import holds
@@ -197,15 +195,6 @@ def test_a_rank_told_with_other_conditions_is_rejected(lie: dict[str, Any]) -> N
     found = symobs.detectability(symobs.StateSpace("[1-a 0; 0 -1]", None, "[0 0]"))
     with pytest.raises(CertificateRejected):
         found.with_answer("constancy", tuple(replace(where, **lie) for where in found.answer["constancy"]))
-
-
-def test_what_an_eigenvalue_leaves_to_the_parameters_is_real() -> None:
-    # λ² = −a² − 1 and λ = b: then a² + b² + 1 = 0, which no real parameters solve.
-    x, a, b = (Scalar.symbol(name) for name in (EIGENVALUE, "a", "b"))
-    e = Environment(relations=(x**2 + a**2 + 1,))
-    assert verify(relation(x - b, "!=", 0), e)[0] == "exact"
-    e = Environment(relations=(x**2 + a**2 - 1,))
-    assert verify(relation(x - b, "!=", 0), e)[0] == ""
 
 
 def _with_cases(steps: tuple[Any, ...], change: Any) -> tuple[Any, ...]:

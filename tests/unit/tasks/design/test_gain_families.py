@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import random
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,7 +16,7 @@ from sympy import Matrix, Rational
 
 import symobs
 from symobs.ground.errors import CertificateRejected, InputError
-from tests.kit import tabled, text_of
+from tests.kit import tabled, tables, text_of
 from tests.support.algebra import (
     characteristic,
 )
@@ -45,20 +46,13 @@ def fractions(matrix: Any) -> list[list[Fraction]]:
 
 # -- the family ----------------------------------------------------------------------------------------------------------
 
-FAMILIES = {
-    "two of three": (TRIPLE, "-1, -1, -1"),
-    "irreducible": (TRIPLE, "-1+1i, -1-1i, -2"),
-    "spectra meet": (symobs.StateSpace("[0 1; 0 0]", C="[1 0; 0 1]"), "0, 0"),
-    "not cyclic": (symobs.StateSpace("[1 0 0; 0 1 0; 0 0 2]", C="[1 0 1; 0 1 1]"), "-1, 1, 2"),
-    "outputs depend": (symobs.StateSpace("[0 1; 2 3]", C="[1 0; 2 0]"), "-1, -2"),
-    "three outputs": (symobs.StateSpace("[1 2 0; 0 1 1; 3 0 1]", C="[1 0 0; 0 1 0; 1 1 1]"), "-1, -2, -3"),
-}
-families = pytest.mark.parametrize("name", FAMILIES)
+FAMILIES = tables(Path(__file__))["families"]
 
 
-@families
+@pytest.mark.parametrize("name", FAMILIES)
 def test_the_family_meets_the_claim_and_has_its_dimension(name: str) -> None:
-    plant, listed = FAMILIES[name]
+    A, C, listed = FAMILIES[name]
+    plant = symobs.StateSpace(A, C=C)
     found = symobs.observer(plant, poles=listed)
     L, names = found.family["L"], [sympy.Symbol(n) for n in found.family["parameters"]]
     n, p = L.shape

@@ -15,21 +15,11 @@ from tests.kit import SERVO, tabled, text_of
 from tests.support.claims.claims import HOLDS, Setting
 
 s = sympy.Symbol("s")
-SEVERAL = StateSpace("[0 1 0; 0 0 1; 1 -2 3]", "[1 0; 0 0; 0 1]", "[1 0 0; 0 1 0]")
-THROUGH = StateSpace("[0 1; -2 k]", "[0; 1]", "[1 0]", "[3]")
 
 
-@pytest.mark.parametrize(
-    ("plant", "K", "L"),
-    [
-        (SERVO, [1, 2], [3, 4]),
-        (SERVO, ["k", 2], [3, "k^2"]),
-        (SEVERAL, [[1, 2, 3], [4, 5, 6]], [[1, 2], [3, 4], [5, 6]]),
-        (THROUGH, ["1/2", 2], [3, 4]),
-    ],
-    ids=["servo", "parametric", "several", "feedthrough"],
-)
-def test_the_loop_of_given_gains(plant: StateSpace, K: object, L: object) -> None:
+@tabled
+def test_the_loop_of_given_gains(given: dict[str, str], K: list[Any], L: list[Any]) -> None:
+    plant = StateSpace(**given)
     found = symobs.compensator(plant, K=K, L=L)
     for value in (Fraction(-2), Fraction(3, 5)):
         HOLDS["compensator"](found, Setting.of(plant, {}, {"k": value}))
