@@ -10,7 +10,7 @@ import pytest
 import sympy
 
 import symobs
-from symobs.ground.errors import InexactInput, InputError, ProblemErrors
+from symobs.ground.errors import InputError, ProblemErrors
 from symobs.problem import read
 from tests.kit import tabled
 from tests.support.paths import ROOT
@@ -77,18 +77,9 @@ def test_what_is_asked_for_moves_too(
     assert sympy.simplify(getattr(there, field) - wanted) == 0
 
 
-@pytest.mark.parametrize(
-    ("values", "kind", "message"),
-    [
-        ({"q": 1}, InputError, r"values\.q: q is no parameter of the problem; use c, k"),
-        ({"k": 0.5}, InexactInput, r'values\.k: 0\.5 is a float; write an exact value such as "1/2"'),
-        ({"s": 1}, InputError, r"values\.s: s is no parameter"),
-        ({"q": 1, "k": 0.5}, ProblemErrors, r"(?s)values\.q.*values\.k"),
-        ({"k": "1/0"}, InputError, r"values\.k"),
-    ],
-)
-def test_refusals(values: dict[str, Any], kind: type[Exception], message: str) -> None:
-    with pytest.raises(kind, match=message):
+@tabled
+def test_refusals(values: dict[str, Any], message: str) -> None:
+    with pytest.raises((InputError, ProblemErrors), match=message):
         symobs.observer(HIDDEN, poles="-k, -5").at(values)
 
 
