@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
 R2, R3 = square_root(Scalar.of(2)), square_root(Scalar.of(3))
-k, s, x = (Scalar.symbol(name) for name in "ksx")
+k, x = (Scalar.symbol(name) for name in "kx")
 
 _FRACTIONS = st.fractions(min_value=-9, max_value=9, max_denominator=9)
 _PAIRS = st.tuples(_FRACTIONS, _FRACTIONS)

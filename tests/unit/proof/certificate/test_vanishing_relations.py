@@ -10,7 +10,7 @@ from symobs.proof.certificate.claims import verify
 from symobs.proof.certificate.pointwise import never_together_zero
 from tests.support.algebra import seeded
 
-a, b, c, d = (Scalar.symbol(name) for name in "abcd")
+a, b, d = (Scalar.symbol(name) for name in "abd")
 
 
 def said(left: Scalar | Matrix, operator: str, right: Scalar | Matrix) -> Relation:

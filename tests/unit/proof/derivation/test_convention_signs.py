@@ -37,7 +37,7 @@ from tests.support.problems.steps import START, literal, said
 
 pytestmark = pytest.mark.usefixtures("own_phrases")
 
-A, B, C, K, L, P, U, X, ESTIMATE = (Letter(name) for name in ("A", "B", "C", "K", "L", "P", "u", "x", "x_hat"))
+A, C, K, L, P, X, ESTIMATE = (Letter(name) for name in ("A", "C", "K", "L", "P", "x", "x_hat"))
 a, h1, k1, l1, l2, m1, m2, r1, s = (
     Scalar.symbol(name) for name in ("a", "h1", "k1", "l1", "l2", "m1", "m2", "r1", "s")
 )

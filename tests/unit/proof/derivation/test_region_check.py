@@ -58,8 +58,6 @@ def found(polynomial: Scalar, known: Environment = IN_S) -> list[tuple[str, ...]
 
 
 ROOT_OF_TWO = square_root(Scalar.of(2))
-CUT = s**2 + s + (h - 1) ** 2 * (2 - h)
-ROOT = ("number_is_root", "CRootOf(h**3 - 2, 0)", "h**3 - 2 = 0", "the only real root")
 IN_ONE = "in exactly one cell all roots are stable"
 
 

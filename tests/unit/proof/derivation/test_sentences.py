@@ -39,7 +39,7 @@ def compared(first: Scalar | str, *rest: object) -> Relation:
 
 
 FULL = compared("O", "=", 2)
-LOW, OF_TWO = compared("Ctr", "=", 1), compared("Ctr", "=", 1, "<", 2)
+LOW = compared("Ctr", "=", 1)
 
 
 def test_a_pole_is_defective_where_it_has_fewer_eigenvectors_than_places() -> None:

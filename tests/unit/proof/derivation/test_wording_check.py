@@ -183,7 +183,7 @@ def property_of(name: str) -> Predicate:
     return Predicate(name, Letter("chi"))
 
 
-STABLE, MARGINAL, UNSTABLE = (property_of(name) for name in ("stable", "marginal", "unstable"))
+STABLE = property_of("stable")
 NOTHING = (property_of("never_zero"), said(1, 1))
 
 

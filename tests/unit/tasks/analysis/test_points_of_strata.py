@@ -7,7 +7,7 @@ from symobs.exact import Scalar
 from symobs.pages.formats.json import result_object
 from symobs.tasks.analysis.strata.loci import Region, loci
 
-a, b, s = (Scalar.symbol(name) for name in "abs")
+a, b = (Scalar.symbol(name) for name in "ab")
 REAL = {"a": "real", "b": "real"}
 
 

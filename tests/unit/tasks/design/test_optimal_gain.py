@@ -146,9 +146,6 @@ def test_textbook_problems(problem: dict[str, Any]) -> None:
         result.to("text", language="de")
 
 
-SIGNS = {"a": "real", "b": "nonzero", "q": "positive", "r": "positive"}
-
-
 @tabled
 def test_closed_forms_hold_at_points(
     A: str, B: str, Q: str, dt: int, signs: dict[str, str], conditions: list[str], said: str

@@ -27,7 +27,7 @@ from symobs.proof.derivation import Derivation, Diagram
 from symobs.proof.derivation.figures_check import equations_of
 from tests.kit import tabled
 
-A, B, C, D, F, G, H, K, L, M, P, Q, T = map(Letter, "ABCDFGHKLMPQT")
+A, B, C, F, G, H, K, L, M, P, T = map(Letter, "ABCFGHKLMPT")
 x, x_hat, u, v, y, y_hat, z = (Letter(name) for name in ("x", "x_hat", "u", "v_r", "y", "y_hat", "z_o"))
 MINUS = Negative(Literal(Scalar.of(1)))
 Labels: TypeAlias = dict[str, Formula | Conjunction]

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from tests.support.tampering.mutations import Line
 
 PAGES = tables(Path(__file__))["pages"]
-SAMPLED = StateSpace("[1 1; 0 1]", "[1/2; 1]", "[1 0]", dt=True)
 
 
 @cache
