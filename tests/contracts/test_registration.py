@@ -152,11 +152,11 @@ from symobs.tasks.analysis.trace.trace import Trace
 from symobs.tasks.result import page_of
 
 if TYPE_CHECKING:
-    from symobs.proof.derivation.builder import Page
+    from symobs.proof.derivation.builder import Builder
 
 
 @page_of(Trace)
-def write_trace(page: Page, result: Trace) -> None:
+def write_trace(page: Builder, result: Trace) -> None:
     """Draw the plant and say what stands on its diagonal."""
     given(page)
     with page.section("trace"):
