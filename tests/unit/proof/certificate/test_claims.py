@@ -154,7 +154,9 @@ def part(given: Any) -> Any:
 @tabled
 def test_a_relation_holds_or_not(relation: list[Any], known: dict[str, Any], *, holds: bool) -> None:
     """For named coefficients, rows that span, ranks, rounded decimals: in general, and where others vanish or do not."""
-    read = {name: tuple(scalars(known[name])) for name in known.keys() & {"relations", "nonzero", "domain", "positive"}}
+    read: dict[str, Any] = {
+        name: tuple(scalars(known[name])) for name in known.keys() & {"relations", "nonzero", "domain", "positive"}
+    }
     named = {name: scalar(value) for name, value in known.get("coefficients", {}).items()}
     environment = Environment(signs=known.get("signs", {}), coefficients=named, **read)
     assert bool(verify(said(*map(part, relation)), environment)[0]) is holds

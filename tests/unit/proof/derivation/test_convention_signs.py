@@ -191,6 +191,7 @@ def test_parameters_that_are_printed_like_a_letter_are_set_apart() -> None:
     assert translated(derivation, alike).symbols == {"A": r"\mathsf{A}", "M": r"\mathsf{M}"}
     section = Section(plain_words(), (plant, L_IS))
     first, _ = translated(Derivation((section, Equal((said(L, GAIN),))), START), alike).steps
+    assert isinstance(first, Section)
     assert first.steps == (plant, Define(said(L, -GAIN)), *told)
     assert set_apart(derivation, [], {}) is derivation
 

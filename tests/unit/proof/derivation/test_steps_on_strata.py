@@ -39,7 +39,9 @@ def step(row: dict[str, Any]) -> Step:
     if "case" not in row:
         ((kind, texts),) = row.items()
         relations = tuple(map(relation, texts))
-        return {"given": Given, "equal": Equal}[kind](relations) if kind != "define" else Define(*relations)
+        if kind == "define":
+            return Define(*relations)  # type: ignore[arg-type]
+        return Given(relations) if kind == "given" else Equal(relations)
     when = row["case"]
     return CaseStep(
         relation(when) if isinstance(when, str) else Conjunction(tuple(map(relation, when))),

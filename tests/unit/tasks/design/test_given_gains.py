@@ -18,7 +18,7 @@ s = sympy.Symbol("s")
 
 
 @tabled
-def test_the_loop_of_given_gains(given: dict[str, str], K: list[Any], L: list[Any]) -> None:
+def test_the_loop_of_given_gains(given: dict[str, Any], K: list[Any], L: list[Any]) -> None:
     plant = StateSpace(**given)
     found = symobs.compensator(plant, K=K, L=L)
     for value in (Fraction(-2), Fraction(3, 5)):

@@ -36,7 +36,7 @@ def test_what_is_no_single_loop_of_numbers_is_told() -> None:
 
 
 @tabled
-def test_what_is_no_single_loop_is_refused(plant: dict[str, str], asked: dict[str, str], said: str) -> None:
+def test_what_is_no_single_loop_is_refused(plant: dict[str, Any], asked: dict[str, str], said: str) -> None:
     with pytest.raises(InputError, match=said):
         symobs.margins(StateSpace(**plant), **asked)
 

@@ -100,11 +100,11 @@ def test_two_systems_share_what_lies_between_them() -> None:
         said("estimated_state_feedback", **{**labels, "Observer": deaf})
 
 
-SPECIAL = {"a plant": PLANT, "-1": MINUS, "-P": Negative(P), "T": T}
+SPECIAL: Labels = {"a plant": PLANT, "-1": MINUS, "-P": Negative(P), "T": T}
 
 
 @tabled
 def test_what_cannot_be_read_is_refused(name: str, labels: dict[str, str], match: str) -> None:
-    read = {label: SPECIAL.get(formula, Letter(formula)) for label, formula in labels.items()}
+    read: Labels = {label: SPECIAL.get(formula, Letter(formula)) for label, formula in labels.items()}
     with pytest.raises(ValueError, match=match):
         said(name, **read)
