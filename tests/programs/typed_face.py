@@ -67,7 +67,9 @@ def answered() -> dict[str, list[Result]]:
         for result in read(path.read_text("utf-8"), path.name, path.parent).solve():
             found[result.task].append(result)
     if missing := [name for name, results in found.items() if not results]:
-        raise SystemExit(f"write worked_examples/{missing[0]}.toml first: what a task answers is read from its examples")
+        raise SystemExit(
+            f"write worked_examples/{missing[0]}.toml first: what a task answers is read from its examples"
+        )
     return found
 
 
