@@ -22,7 +22,6 @@ from symobs.ground.errors import BudgetExceeded, CertificateRejected, Derivation
 from symobs.tasks.result import tasks
 from tests.kit import tabled, tables, text_of
 from tests.support.claims.claims import HOLDS, Setting
-from tests.support.problems.problems_by_hand import is_zero
 from tests.support.sampling import FULL
 from tests.support.second_reader import sympy_scalar
 
@@ -46,7 +45,8 @@ def zero(expression: Any) -> bool:
     """Whether a SymPy expression or matrix is 0."""
     if expression.has(sympy.exp, sympy.cos, sympy.sin):
         expression = sympy.simplify(expression.rewrite(sympy.exp))
-    return all(map(is_zero, expression)) if isinstance(expression, sympy.MatrixBase) else is_zero(expression)
+    entries = list(expression) if isinstance(expression, sympy.MatrixBase) else [expression]
+    return all(sympy.expand(sympy.together(entry).as_numer_denom()[0]) == 0 for entry in entries)
 
 
 # -- answers -----------------------------------------------------------------------------------------------------------
