@@ -1,14 +1,13 @@
 """The standard library's `dataclass` for classes that are made at every start: the same, in a twentieth of the time.
 
 A page needs some 140 classes of named parts.  The standard library writes and compiles six functions for each, which
-together takes as long as all the mathematics of a small page; here they are closures over the names, and only the
-`__init__` of what is made often is compiled.  `dataclasses.replace` and `dataclasses.fields` work on what is made here.
+together takes as long as all the mathematics of a small page; here they are closures over the names, and nothing is
+compiled.  `dataclasses.replace` and `dataclasses.fields` work on what is made here.
 """
 
 from __future__ import annotations
 
 import dataclasses
-import itertools
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeVar, dataclass_transform, overload
 
@@ -24,8 +23,6 @@ _MISSING = dataclasses.MISSING
 _OPTIONS = "__compared_and_written__"
 #: Where an object keeps its hash.
 _HASH = "__hash_of_parts__"
-#: The number of objects from which on a class is worth an `__init__` that is compiled.
-_OFTEN = 64
 _PART: Any = vars(dataclasses)["_FIELD"]  # by this mark `replace` and `fields` know a part
 
 
@@ -85,59 +82,43 @@ def _parts(cls: Any) -> dict[str, Any]:
 
 
 def _initialiser(cls: Any, parts: dict[str, Any], names: tuple[str, ...]) -> Callable[..., None]:
-    """Return `__init__`, which takes the parts by place, as `names` go, or by name.
-
-    A class that is made often gets one that is compiled, which pays from about a hundred objects on.
-    """
+    """Return `__init__`, which takes the parts by place, as `names` go, or by name."""
     taken = (*names, *(name for name, part in parts.items() if part.init and part.kw_only))
     defaults = {name: part.default for name, part in parts.items() if part.default is not _MISSING}
     made = [(name, part.default_factory) for name, part in parts.items() if part.default_factory is not _MISSING]
-    total = len({*taken, *defaults, *(name for name, _ in made)})
-    open_to_names = [frozenset(taken) - set(names[:count]) for count in range(len(names) + 1)]
+    most, total = len(names), len({*taken, *defaults, *(name for name, _ in made)})
+    open_to_names = [frozenset(taken) - set(names[:count]) for count in range(most + 1)]
+    rests = [{name: defaults[name] for name in names[count:] if name in defaults} for count in range(most + 1)]
+    whole = [most == total and count + len(rest) == most for count, rest in enumerate(rests)]
     finish = getattr(cls, "__post_init__", None)
-    calls = itertools.count(1)
 
     def initialise(self: Any, *values: Any, **named: Any) -> None:
-        if next(calls) == _OFTEN:
-            type.__setattr__(cls, "__init__", _compiled(parts, finish))
         own = self.__dict__  # a frozen class refuses to be written to in any other way
-        own.update(defaults)
-        own.update(zip(names, values, strict=False))  # how many there are is looked at below
-        own.update(named)
+        count = len(values)
+        if not named and count <= most and whole[count]:
+            for name, value in zip(names, values):  # noqa: B905 - as many as were counted; the quickest way by far
+                own[name] = value
+            if count < most:
+                own.update(rests[count])
+            if finish is not None:
+                finish(self)
+            return
+        if defaults:
+            own.update(defaults)
+        for name, value in zip(names, values):  # noqa: B905 - how many there are is looked at below
+            own[name] = value
+        if named:
+            own.update(named)
         for name, make in made:
             if name not in own:
                 own[name] = make()
-        count = len(values)
-        if count > len(names) or len(own) != total or not named.keys() <= open_to_names[count]:
+        if count > most or len(own) != total or not named.keys() <= open_to_names[count]:
             given = ", ".join((*map(repr, values), *named))
             raise TypeError(f"{cls.__qualname__} takes {', '.join(taken)}, not {given}")
         if finish is not None:
             finish(self)
 
     return initialise
-
-
-def _compiled(parts: dict[str, Any], finish: Callable[[Any], None] | None) -> Callable[..., None]:
-    """Return `__init__` as the standard library would write it."""
-    known: dict[str, Any] = {"__finish": finish, "__missing": _MISSING}  # names that no part has
-    by_place: list[str] = []
-    by_name: list[str] = []
-    lines = ["__parts = self.__dict__"]
-    for name, part in parts.items():
-        is_made = part.default_factory is not _MISSING
-        known |= {f"__default_{name}": _MISSING if is_made else part.default, f"__make_{name}": part.default_factory}
-        has_default = is_made or part.default is not _MISSING
-        value = f"__make_{name}()" if is_made else f"__default_{name}"
-        if part.init:
-            (by_name if part.kw_only else by_place).append(f"{name}=__default_{name}" if has_default else name)
-            value = f"{value} if {name} is __missing else {name}" if is_made else name
-        if part.init or has_default:
-            lines.append(f"__parts['{name}'] = {value}")
-    lines += ["__finish(self)"] if finish is not None else []
-    head = ", ".join(("self", *by_place, *(["*", *by_name] if by_name else [])))
-    exec(f"def initialise({head}):\n  " + "\n  ".join(lines), known)  # noqa: S102 - of names of this program alone
-    made: Callable[..., None] = known["initialise"]
-    return made
 
 
 def _comparison(parts: dict[str, Any], *, hashed: bool) -> dict[str, Any]:

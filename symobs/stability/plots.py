@@ -626,10 +626,9 @@ def _roots(polynomial: Scalar, variable: str, name: str, value: Fraction) -> lis
 
 
 def _paired(before: Sequence[Place], after: Sequence[Place]) -> list[Place]:
-    """Return the roots in the order of the previous ones, nearest pairs first, as rounded places have them."""
-    starts, ends = ([(float(x), float(y)) for x, y in row] for row in (before, after))
+    """Return the roots in the order of the previous ones, nearest pairs first."""
     distances = sorted(
-        ((x - a) ** 2 + (y - b) ** 2, i, j) for i, (x, y) in enumerate(starts) for j, (a, b) in enumerate(ends)
+        ((x - a) ** 2 + (y - b) ** 2, i, j) for i, (x, y) in enumerate(before) for j, (a, b) in enumerate(after)
     )
     chosen: dict[int, int] = {}
     for _, i, j in distances:
