@@ -67,8 +67,8 @@ def common_divisor(field: Field, left: fmpz_mpoly, right: fmpz_mpoly) -> fmpz_mp
     """Return the scaled greatest common divisor.
 
     Of polynomials over Q it is that over Q.  Else it is found modulo a prime at which the roots are integers, and its
-    numbers are the shortest with these residues.  Where the leading coefficient of `left` does not vanish there, the degree
-    is not less than the true one, so that what divides both polynomials is the greatest.
+    coefficients are the shortest numbers with these residues, which is checked by division.  Where the leading coefficient
+    of `left` does not vanish there, the degree is not less than the true one: what divides both polynomials is the greatest.
     """
     if not left or not right:
         return scaled(field, left or right)
@@ -97,9 +97,13 @@ class _Residues(NamedTuple):
 
 @lru_cache(maxsize=64)
 def _residues(field: Field, bits: int) -> _Residues:
-    """Return a prime of so many bits modulo which the squares of all roots have roots."""
+    """Return a prime of so many bits modulo which the squares of all roots have roots.
+
+    It has passed the test of Baillie, Pomerance, Selfridge and Wagstaff; a number that is none, of which nobody knows one,
+    could only leave a common factor where it is.
+    """
     prime, squares = 1 << bits | 1, [fmpz(square) for _, square in field.roots]
-    while not (fmpz(prime).is_prime() and all(square.jacobi(prime) == 1 for square in squares)):
+    while not (all(square.jacobi(prime) == 1 for square in squares) and fmpz(prime).is_probable_prime()):
         prime += 2
     roots = [int(square.sqrtmod(prime)) for square in squares]
     powers = itertools.product((0, 1), repeat=len(roots))
