@@ -11,7 +11,6 @@ from symobs.applications.audit import differences
 from symobs.applications.audit.equations import (
     FUNCTIONS,
     INSTANTS,
-    NOT_NEGATIVE,
     NOT_POSITIVE,
     EquationConditions,
     Gap,
@@ -63,7 +62,7 @@ from symobs.system.conditions import vanishing_factors
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from symobs.applications.audit.equations import Kept
     from symobs.problem import Problem
@@ -205,9 +204,8 @@ def is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> 
 _MOST_LETTERS = 3
 
 
-#: The signs of so many factors under roots are tried both ways; signs that say whether one is not positive.
+#: The signs of so many squared factors under roots are tried both ways.
 _MOST_SQUARES = 3
-_SIGNED = NOT_NEGATIVE | NOT_POSITIVE
 
 
 def _is_odd(turned: Sequence[Scalar], chosen: Sequence[Scalar]) -> bool:
@@ -215,13 +213,35 @@ def _is_odd(turned: Sequence[Scalar], chosen: Sequence[Scalar]) -> bool:
     return sum(factor in turned for factor in chosen) % 2 == 1
 
 
+def _share_nothing(products: Sequence[tuple[Scalar, ...]]) -> bool:
+    """Return whether no factor stands in two of the products."""
+    factors = [*chain.from_iterable(products)]
+    return len(set(factors)) == len(factors)
+
+
+def _is_multiple(value: Scalar, products: Iterable[tuple[Scalar, ...]]) -> bool:
+    """Return whether a value is one of the products times a number."""
+    return any((value / product_of(chosen)).is_constant for chosen in products)
+
+
+def _open_signs(reading: Reading) -> BudgetExceeded:
+    """Return the error for an equation that depends on signs about which nothing is known for certain."""
+    factors = ", ".join(map(text_of_value, reading.squares))
+    message = f"it depends on the signs of {factors} under roots of squares, which are open"
+    return BudgetExceeded(message, repair="declare the signs of symbols")
+
+
 @dataclass
 class Verdict:
-    """The correction of an equation that does not hold in general, and the reason; `holds` states where it does."""
+    """The correction of an equation that does not hold in general, and the reason.
+
+    `holds` states where it does; `needs` is whether the correction is the equation itself with further conditions.
+    """
 
     right: str
     reason: str
     holds: str = ""
+    needs: bool = False
 
 
 @dataclass(frozen=False)
@@ -287,7 +307,7 @@ class EquationAuditor:
             equation, self.where = parted(right, self.symbols, "") if " where " in right else (right, before)
             for pair in pairwise(self._members(equation)):
                 verdict = self._checked(*pair)
-                if verdict is not None and verdict.holds and verdict.right != right:
+                if verdict is not None and verdict.right not in {"", right} and (verdict.holds or verdict.needs):
                     return self._confirmed(verdict.right)
                 if verdict is not None:
                     raise CertificateRejected(f"the equation {right} does not hold", claim=right)
@@ -327,15 +347,19 @@ class EquationAuditor:
         return reading
 
     def true(self, left: SyntaxNode, right: SyntaxNode) -> bool:
-        """Return whether an equation holds in general, whatever the signs of squared radicands."""
+        """Return whether an equation is seen to hold in general, whatever the signs of what is squared under its roots."""
         reading = self.reading(left, right)
-        if not any(part.text == "sqrt" for side in (left, right) for part in every(side)):  # whose signs are noted anew
+        if not any(
+            part.text == "sqrt" for side in (left, right) for part in every(side)
+        ):  # else `squares` are found anew
             reading.kept = self.kept.setdefault((id(reading.environment), self.where.text), {})
         found = self._true(left, right, reading)
-        return all(
-            self._true(left, right, self.reading(left, right, turned)) if turned else found
-            for turned in self._choices(reading)
-        )
+        if not reading.squares:
+            return found
+        try:
+            return all(self._turned_is_true(left, right, reading, turned) for turned in self._choices(reading))
+        except BudgetExceeded:
+            return False
 
     def _true(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
         try:
@@ -351,15 +375,13 @@ class EquationAuditor:
         try:
             left, right = spectral(printed_left, printed_right, environment.variable)
             sides = [self._value(side, reading) for side in (left, right)]
-            if () not in (choices := self._choices(reading)):
-                reading = self.reading(printed_left, printed_right, choices[0])
-                sides = [self._value(side, reading) for side in (left, right)]
             pair = common(*sides)
         except Misfit as misfit:
+            if reading.squares and len(self._gaps(printed_left, printed_right, reading)) > 1:
+                raise _open_signs(reading) from None
             return Verdict(*self._misfit(printed_left, printed_right, str(misfit), environment))
-        turned = self._turned(printed_left, printed_right, reading, choices)
-        if turned is not None:
-            return turned
+        if reading.squares:
+            return self._under_signs(printed_left, printed_right, reading)
         if equal(*pair):
             return self._where_it_holds(printed_left, printed_right, reading)
         self.require_told_apart(*pair)
@@ -390,37 +412,82 @@ class EquationAuditor:
             self._under(f"{left} = {right}", *needed), f"true in general only: {'; '.join(reasons)}", "in general"
         )
 
+    # -- roots of squares ---------------------------------------------------------------------------------------------
+
     def _choices(self, reading: Reading) -> list[tuple[Scalar, ...]]:
-        """Return which squared radicands can be negative together; raises `BudgetExceeded` for many of them."""
-        if len(squares := reading.squares) > _MOST_SQUARES:
-            raise BudgetExceeded(f"the signs of more than {_MOST_SQUARES} factors under roots are open")
+        """Return which of the squared factors may be negative together; raises `BudgetExceeded` for many of them.
+
+        Where a factor is 0 either sign is right, so that of conditions `>= 0` on products those are used that share none.
+        """
+        squares = reading.squares
+        if len(squares) > _MOST_SQUARES:
+            raise _open_signs(reading)
+        known = self._known_products(squares)
         choices = [*chain.from_iterable(combinations(squares, count) for count in range(len(squares) + 1))]
-        products = {chosen: self.where.sign(product_of(chosen)) for chosen in choices if len(chosen) > 1}
-        known = {chosen: sign in NOT_POSITIVE for chosen, sign in products.items() if sign in _SIGNED}
         found = [turned for turned in choices if all(_is_odd(turned, chosen) == odd for chosen, odd in known.items())]
         return found or choices  # of conditions that contradict each other nothing is concluded
 
-    def _turned(
-        self, left: SyntaxNode, right: SyntaxNode, reading: Reading, choices: Sequence[tuple[Scalar, ...]]
-    ) -> Verdict | None:
-        """Return the signs of squared radicands for which an equation holds, unless it holds for all or none."""
-        true = [turned for turned in choices if self._true(left, right, self.reading(left, right, turned))]
-        if not true or len(true) == len(choices):
-            return None
-        found, left_over = {}, choices
-        for count in range(1, len(reading.squares) + 1):
-            for chosen in combinations(reading.squares, count):
-                odd = _is_odd(true[0], chosen)
-                rest = [turned for turned in left_over if _is_odd(turned, chosen) == odd]
-                if len(rest) < len(left_over) and all(_is_odd(turned, chosen) == odd for turned in true):
-                    found[chosen], left_over = odd, rest
-        if len(left_over) > len(true):  # one choice of signs for which it is true
-            found = {(factor,): factor in true[0] for factor in reading.squares}
+    def _known_products(self, squares: Sequence[Scalar]) -> dict[tuple[Scalar, ...], bool]:
+        """Return the products of squared factors with a known sign, and whether that is below 0."""
+        products = chain.from_iterable(combinations(squares, count) for count in range(2, len(squares) + 1))
+        signs = {chosen: self.where.sign(product_of(chosen)) for chosen in products}
+        weak = [chosen for chosen, sign in signs.items() if sign in {"nonnegative", "nonpositive"}]
+        used = weak if _share_nothing(weak) else []
+        strict = [chosen for chosen, sign in signs.items() if sign in {"positive", "negative"}]
+        return {chosen: signs[chosen] in NOT_POSITIVE for chosen in (*strict, *used)}
+
+    def _turned_is_true(
+        self, left: SyntaxNode, right: SyntaxNode, reading: Reading, turned: tuple[Scalar, ...]
+    ) -> bool:
+        """Return whether an equation holds with these factors negative; raises `BudgetExceeded` where others turn up."""
+        other = self.reading(left, right, turned)
+        found = self._true(left, right, other)
+        if not set(other.squares) <= set(reading.squares):
+            raise BudgetExceeded("a root of a square stands below another root, and signs are open")
+        return found
+
+    def _gaps(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> set[object]:
+        """Return the sets of exceptions that the possible signs lead to, None where the sides have no value."""
+        found: set[object] = set()
+        for turned in self._choices(reading):
+            other = self.reading(left, right, turned)
+            try:
+                for side in (left, right):
+                    self._value(side, other)
+                found.add(frozenset((gap.values, gap.below) for gap in other.gaps))
+            except Misfit:
+                found.add(None)
+        return found
+
+    def _under_signs(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
+        """Return the verdict on an equation with roots of squares whose signs are open.
+
+        Raises `BudgetExceeded` where conditions are left that may decide about them, or exceptions depend on them.
+        """
+        choices, squares = self._choices(reading), reading.squares
+        true = [turned for turned in choices if self._turned_is_true(left, right, reading, turned)]
+        if not true:
+            return Verdict("", "the sides are not equal, whatever the signs of what is squared under the roots")
+        if len(self._gaps(left, right, reading)) > 1:
+            raise _open_signs(reading)
+        if len(true) == len(choices):
+            return self._where_it_holds(left, right, reading)
+        known = self._known_products(squares)
+        letters = set().union(*(factor.names for factor in squares))
+        if any(letters & value.names and not _is_multiple(value, known) for value in self.where.above):
+            raise _open_signs(reading)
+        found, rest = dict[tuple[Scalar, ...], bool](), choices
+        for chosen in chain.from_iterable(combinations(squares, count) for count in range(1, len(squares) + 1)):
+            odd = _is_odd(true[0], chosen)
+            left_over = [turned for turned in rest if _is_odd(turned, chosen) == odd]
+            if len(left_over) < len(rest) and all(_is_odd(turned, chosen) == odd for turned in true):
+                found[chosen], rest = odd, left_over
+        is_all = len(rest) == len(true) and _share_nothing([*known, *found])
+        if not is_all:  # one choice of signs for which it is true
+            found = {(factor,): factor in true[0] for factor in squares}
         needed = [f"{text_of_value(product_of(chosen))} {'<=' if odd else '>='} 0" for chosen, odd in found.items()]
-        where = "in general only where" if len(left_over) == len(true) else "where"
-        return Verdict(
-            self._under(f"{left} = {right}", *needed), f"a root is not negative: true {where} {' and '.join(needed)}"
-        )
+        where = f"{'in general only ' * is_all}where {' and '.join(needed)}"
+        return Verdict(self._under(f"{left} = {right}", *needed), f"a root is not negative: true {where}", needs=True)
 
     def _value(self, node: SyntaxNode, reading: Reading) -> Printed:
         try:

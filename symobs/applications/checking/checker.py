@@ -568,17 +568,17 @@ def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line
     """Return the lines without those that mean nothing in a derivation and are parts of the answer, where it is told why.
 
     The last line of a letter is the answer: where that cannot be read, it is no line that could be true or false either,
-    and a right one need not have the value of the solution.  So is a line that gives a part under a letter of its own.
+    and a right one need not have the value of the solution.  So is a line that gives a part under another letter than its own.
     """
     judged = {part.letter: part for part in parts if part.given}
-    values = {_spaced(part.given) for part in parts if part.given}
     sides = [[side.strip() for side in line.relation.partition("=")[::2]] for line in lines]
     answers = set({letter: place for place, (letter, _) in enumerate(sides)}.values())
+    elsewhere = {_spaced(part.given) for letter, part in judged.items() if all(letter != own for own, _ in sides)}
 
     def says_more(place: int) -> bool:
         line, (letter, value) = lines[place], sides[place]
         if letter not in judged:
-            return line.verdict != "unreadable" or _spaced(value) not in values
+            return line.verdict != "unreadable" or _spaced(value) not in elsewhere
         part = judged[letter]
         is_given = _spaced(part.given) == _spaced(value)
         if place in answers and (part.verdict == "unreadable" or (part.verdict == "right" and is_given)):

@@ -14,7 +14,6 @@ from symobs.tasks.analysis.stability_region.margins import NotRational, gains_of
 from symobs.tasks.design.margins.margins import Margins, has_loop, loop_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
     from fractions import Fraction
 
     from symobs.formula.phrases.languages import Language
@@ -64,16 +63,11 @@ def frequency_response(result: Result, language: Language, *, moving: bool) -> d
     drawn, phase = _curves(*found, discrete=plant.is_discrete), phase_margin(result)
     if phase is None:
         return drawn | {"says": said["said_no_margins"]}
-    told = {"phase_deg": "∞" if phase == INFINITE else language.decimal(phase)}
+    told = {"phase": "∞" if phase == INFINITE else f"≈ {language.decimal(phase)}°"}
     if not moving:
         ends = gains_of(*found, plant.dt)
         told |= {name: language.decimal(_end(end)) for name, end in zip(("gain_down", "gain_up"), ends, strict=True)}
-    return drawn | {"says": margins_said(said["said_phase_margin" if moving else "said_margins"], told)}
-
-
-def margins_said(template: str, told: Mapping[str, str]) -> str:
-    """Return the sentence on margins; an infinite one is no rounded number of degrees."""
-    return template.format(**told).replace("≈ ∞°", "∞")
+    return drawn | {"says": said["said_phase_margin" if moving else "said_margins"].format(**told)}
 
 
 def _end(value: RealNumber | str) -> str:

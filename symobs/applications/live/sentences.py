@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from symobs.applications.live.frequency_response import margins_said
 from symobs.exact import Scalar
 from symobs.exact.algebraic.polynomial_roots import Factored, factored, roots_of
 from symobs.ground.dataclass import dataclass
@@ -50,10 +49,10 @@ def sentence(result: Result, stable: Stability, printer: CardPrinter) -> str:
         if result.fields.get("meaning") == "lyapunov":
             fact = said["said_lyapunov"].format(fact=fact)
     elif result.task == "margins" and not is_no:
-        ends = {
-            name: printer.language.decimal(str(result.fields[name])) for name in ("gain_down", "gain_up", "phase_deg")
-        }
-        fact = margins_said(said["said_margins"], {name: text.replace("oo", "∞") for name, text in ends.items()})
+        names = ("gain_down", "gain_up", "phase_deg")
+        down, up, phase = (printer.language.decimal(str(result.fields[name])).replace("oo", "∞") for name in names)
+        phase = phase if phase == "∞" else f"≈ {phase}°"
+        fact = said["said_margins"].format(gain_down=down, gain_up=up, phase=phase)
     elif stable.known and (not is_no or result.task in _ABOUT_STABILITY):
         fact = stable.told(printer)
     elif result.task == "stability_region" and not is_no:
