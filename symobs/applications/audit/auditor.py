@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import field, replace
 from itertools import chain, combinations, pairwise, product
 from typing import TYPE_CHECKING, Any
@@ -349,9 +350,7 @@ class EquationAuditor:
     def true(self, left: SyntaxNode, right: SyntaxNode) -> bool:
         """Return whether an equation is seen to hold in general, whatever the signs of what is squared under its roots."""
         reading = self.reading(left, right)
-        if not any(
-            part.text == "sqrt" for side in (left, right) for part in every(side)
-        ):  # else `squares` are found anew
+        if "sqrt" not in {part.text for side in (left, right) for part in every(side)}:  # else `squares` are found anew
             reading.kept = self.kept.setdefault((id(reading.environment), self.where.text), {})
         found = self._true(left, right, reading)
         if not reading.squares:
@@ -439,11 +438,17 @@ class EquationAuditor:
     def _turned_is_true(
         self, left: SyntaxNode, right: SyntaxNode, reading: Reading, turned: tuple[Scalar, ...]
     ) -> bool:
-        """Return whether an equation holds with these factors negative; raises `BudgetExceeded` where others turn up."""
+        """Return whether an equation holds with these factors negative.
+
+        Raises `BudgetExceeded` where other factors turn up, or where the sides may be equal although that is not shown.
+        """
         other = self.reading(left, right, turned)
         found = self._true(left, right, other)
         if not set(other.squares) <= set(reading.squares):
             raise BudgetExceeded("a root of a square stands below another root, and signs are open")
+        if not found:
+            with suppress(Misfit):
+                self.require_told_apart(*common(*(self._value(side, other) for side in (left, right))))
         return found
 
     def _gaps(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> set[object]:
@@ -466,6 +471,8 @@ class EquationAuditor:
         """
         choices, squares = self._choices(reading), reading.squares
         true = [turned for turned in choices if self._turned_is_true(left, right, reading, turned)]
+        if not true and any(is_rounded(side, reading) for side in (left, right)):
+            raise _open_signs(reading)
         if not true:
             return Verdict("", "the sides are not equal, whatever the signs of what is squared under the roots")
         if len(self._gaps(left, right, reading)) > 1:

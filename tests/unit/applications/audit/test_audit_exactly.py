@@ -165,7 +165,10 @@ def test_a_root_of_what_is_negative_has_no_value(relation: str) -> None:
     assert (found.holds, found.reason) == ("", "sqrt(-k) is not real")
 
 
-@pytest.mark.parametrize("relation", ["sqrt(3 + 2 sqrt(2)) = 1 + sqrt(2)", "sqrt(exp(2 c)) = exp(c)"])
+@pytest.mark.parametrize(
+    "relation",
+    ["sqrt(3 + 2 sqrt(2)) = 1 + sqrt(2)", "sqrt(exp(2 c)) = exp(c)", "sqrt(c^2) sqrt(3 + 2 sqrt(2)) = c (1 + sqrt(2))"],
+)
 def test_roots_that_only_seem_to_differ_are_not_said_to(relation: str) -> None:
     with pytest.raises(ProblemErrors, match="is not decided"):
         findings(relation, **CHAIN)
