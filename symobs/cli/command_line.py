@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import gc
 import sys
-from difflib import get_close_matches
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -97,6 +96,8 @@ class Tasks(click.Group):
         """Return the command, or raise an error that names the most similar one."""
         name = args[0]
         if not name.startswith("-") and self.get_command(ctx, name) is None:
+            from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
+
             import symobs  # noqa: PLC0415 - the package itself stands above all floors
 
             nearest = get_close_matches(name, self.list_commands(ctx), 1)

@@ -6,7 +6,6 @@ import keyword
 import re
 import unicodedata
 from dataclasses import field
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact import Scalar
@@ -134,6 +133,8 @@ class Scope:
     def nearest(self, name: str, *, called: bool) -> str | None:
         """Return the known name most similar to `name`, functions included for a call."""
         known = self.declared()[:_MOST_COMPARED] + (list(FUNCTIONS) if called else [])
+        from difflib import get_close_matches  # noqa: PLC0415 - needed for messages only
+
         return next(iter(get_close_matches(name, known, 1)), None)
 
 

@@ -7,4 +7,4 @@ answers.
 
 #: Objects made before Python collects: imports and derivations make many that stay, and collecting among them as often
 #: as usual takes a tenth of a short run.
-COLLECTED_AFTER = 50_000
+COLLECTED_AFTER = 100_000
