@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.applications.audit.auditor import EquationAuditor, printed_entries
 from symobs.applications.audit.differences import as_matrix, wrong_entries
-from symobs.applications.audit.evaluation import Misfit, common, value_of
+from symobs.applications.audit.evaluation import Misfit, common, equal, value_of
 from symobs.applications.audit.slips import SearchBudget
 from symobs.applications.checking.answers import Answer, Step, as_value, read_like
 from symobs.applications.checking.handwriting import in_letters, letters_of_entries
@@ -120,7 +120,9 @@ class LineAuditor(EquationAuditor):
         wrong = [pair for pair in pairwise(members) if not self.true(*pair)]
         for pair in wrong:
             with suppress(Misfit):
-                self.require_told_apart(*common(*(self._value(side, reading) for side in pair)))
+                sides = common(*(self._value(side, reading) for side in pair))
+                if not equal(*sides):  # else the signs of roots are why it is not true
+                    self.require_told_apart(*sides)
         return not wrong
 
     def defined(self, entry: PrintedEntry) -> tuple[str, Scalar | Matrix] | None:

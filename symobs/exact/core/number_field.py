@@ -76,9 +76,9 @@ def common_divisor(field: Field, left: fmpz_mpoly, right: fmpz_mpoly) -> fmpz_mp
         return scaled(field, left.gcd(right))
     if not variables_of(field, left) or not variables_of(field, right):
         return field.one
-    bits = _FIRST_BITS
+    bits, squares = _FIRST_BITS, tuple(square for _, square in field.roots)
     while True:
-        found = _divisor_modulo(field, left, right, _residues(field, bits))
+        found = _divisor_modulo(field, left, right, _residues(squares, bits))
         if found and (found.is_one() or all(_divides(field, found, polynomial) for polynomial in (left, right))):
             return found
         bits *= 2
@@ -96,23 +96,24 @@ class _Residues(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def _residues(field: Field, bits: int) -> _Residues:
-    """Return a prime of so many bits modulo which the squares of all roots have roots.
+def _residues(squares: tuple[int, ...], bits: int) -> _Residues:
+    """Return a prime of so many bits modulo which these squares have roots.
 
     It has passed the test of Baillie, Pomerance, Selfridge and Wagstaff; a number that is none, of which nobody knows one,
     could only leave a common factor where it is.
     """
-    prime, squares = 1 << bits | 1, [fmpz(square) for _, square in field.roots]
-    while not (all(square.jacobi(prime) == 1 for square in squares) and fmpz(prime).is_probable_prime()):
+    prime = 1 << bits | 1
+    while not (all(fmpz(square).jacobi(prime) == 1 for square in squares) and fmpz(prime).is_probable_prime()):
         prime += 2
-    roots = [int(square.sqrtmod(prime)) for square in squares]
+    roots = [int(fmpz(square).sqrtmod(prime)) for square in squares]
     powers = itertools.product((0, 1), repeat=len(roots))
     return _Residues(prime, {p: prod(r for r, power in zip(roots, p, strict=True) if power) % prime for p in powers})
 
 
 def _divisor_modulo(field: Field, left: fmpz_mpoly, right: fmpz_mpoly, residues: _Residues) -> fmpz_mpoly:
     """Return the divisor modulo a prime in numbers of the field, 0 where a leading coefficient vanishes."""
-    context = fmpz_mod_mpoly_ctx.get(field.names, modulus=residues.prime, ordering=field.context.ordering())
+    letters = tuple(f"x{index}" for index in range(len(field.names)))  # the library keeps what it is asked for
+    context = fmpz_mod_mpoly_ctx.get(letters, modulus=residues.prime, ordering=field.context.ordering())
     places = [index for index, _ in field.roots]
     one, other = (_image(context, places, polynomial, residues) for polynomial in (left, right))
     if not one or max(one.monoms()) != max(_without(powers, places) for powers in left.monoms()):
