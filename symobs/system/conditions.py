@@ -202,7 +202,9 @@ def _sign_by_letters(factor: Scalar, declared: tuple[tuple[str, str], ...], know
         if found in _NEVER_ZERO:
             return found
         known = found if known == "real" else known
-    found = ("real",) if factor.size > _BY_DISCRIMINANT_UP_TO else (_sign_beside(factor, n, signs) for n in factor.names)
+    found = (
+        ("real",) if factor.size > _BY_DISCRIMINANT_UP_TO else (_sign_beside(factor, n, signs) for n in factor.names)
+    )
     return next((sign for sign in found if sign != "real"), known)
 
 
