@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 PAGES = (("text", "en"), ("text", "de"), ("html", "en"), ("beamer", "en"), ("latex", "de"))
 #: What a page of a test of rank says of the pair, beside the sentence "if and only if".
 _VERDICT = re.compile(
-    r"(is|are)( therefore| thus)? (not )?(un)?(observable|controllable|detectable|stabilizable)|^\s*In this case|not decided here",
-    re.MULTILINE,
+    r"(is|are) (not )?(observable|controllable|detectable|stabilizable)|^\s*In this case|not decided here", re.MULTILINE
 )
 _RANK_TESTS = {"observability", "controllability", "detectability", "stabilizability"}
 
