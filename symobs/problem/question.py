@@ -192,10 +192,8 @@ def _slot(page: Builder, task: Task, name: str, value: Any) -> Slot:
     match task.keywords[name]:
         case "Poles":
             own = "phi_o" if name == "observer_poles" or task.name.endswith("observer") else "phi_c"
-            letters = (
-                own,
-                *(f"phi_{place}" for place in itertools.count(1)),
-            )  # several designs, each with poles of its own
+            # several designs have poles of their own
+            letters = itertools.chain((own,), (f"phi_{place}" for place in itertools.count(1)))
             letter = next(x for x in letters if not page.defines(x) or page[x].value == value.polynomial)
             phi = page[letter] if page.defines(letter) else page.set(letter, value.polynomial)
             return Roots(phi.formula, tuple(root_of_pole(pole, page.plant.variable) for pole in value.poles))
