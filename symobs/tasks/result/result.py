@@ -11,6 +11,7 @@ from functools import cache, cached_property, partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, Self, TypeAlias, Unpack, overload
 
+from symobs.exact import TooLarge
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.convention import STANDARD
 from symobs.ground.dataclass import dataclass
@@ -253,7 +254,7 @@ class Result(TaskTraits):
         written = page.derivation()
         try:
             established = written.check()
-        except DerivationRejected:
+        except (DerivationRejected, TooLarge):
             written = without_failing_cases(written)
             established = written.check()
         for name, value in self.data.items():
