@@ -87,7 +87,8 @@ def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  #
     """Return the verdict on a polynomial where the relations hold, or as it is written, whichever tells more."""
     variable, signs = environment.variable, environment.signs
     found = stability(polynomial_of(value, environment), variable, signs, discrete=discrete).verdict
-    is_same = value.denominator.is_constant and value.coefficients(variable)[0].is_constant  # of the same degree
+    outer = value.denominator, value.coefficients(variable)[0]
+    is_same = all(never_zero(part, signs) for part in outer)  # defined, and of the same degree
     return stability(value, variable, signs, discrete=discrete).verdict if found == "conditional" and is_same else found
 
 
@@ -362,6 +363,11 @@ def is_exactly(
     positive = tuple(value**2 if operator == "!=" else value for value, operator in said)
     if is_criterion(name, polynomial, positive, environment, discrete):
         return True
+    if name == "positive_definite" and isinstance(polynomial, tuple) and said:
+        from symobs.stability.criteria.stability_conditions import say_the_same  # noqa: PLC0415 - only these pages pay for it
+
+        bounds = [bound for each in polynomial for bound in needed(name, each, environment, discrete)]
+        return say_the_same(bounds, positive, environment.signs)
     if name != "stable" or not said or isinstance(polynomial, tuple):
         return False
     from symobs.proof.derivation.region_check import holds_exactly, region_of  # noqa: PLC0415 - only pages of regions pay for it
