@@ -28,12 +28,14 @@ from symobs.applications.checking.handwriting import in_letters, with_commas, wi
 from symobs.applications.checking.regions import region_verdict
 from symobs.exact import Complex, Matrix, Root, Scalar, TooLarge, kernel
 from symobs.exact.algebraic.root_location import complex_roots
+from symobs.exact.core.generators import functions_in
 from symobs.exact.linear_algebra.transfer_function import pole_and_zero_polynomial
 from symobs.formula.expression import parse_matrix
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, NotShown, ProblemErrors, SymobsError, UnknownName
-from symobs.problem.expect import agrees, found_in, is_digits, met, names_of
+from symobs.problem.agreement import DIFFERENT, EQUAL, OPEN, agrees, in_form_of
+from symobs.problem.expect import found_in, is_digits, met, names_of
 from symobs.tasks.analysis.realization.canonical_form import CanonicalForm
 from symobs.tasks.analysis.realization.kalman_decomposition import Decomposition
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
@@ -437,6 +439,11 @@ class _Task:
     #: Whether one of two gains is given that are not unique, and right or wrong together.
     is_half: bool = False
 
+    @property
+    def signs(self) -> Mapping[str, str]:
+        """The declared signs."""
+        return self.view.plant.symbols.signs
+
 
 def judge_task(
     view: ResultInConvention, given: Mapping[str, Any], symbols: tuple[str, ...], marking: Marking
@@ -512,13 +519,19 @@ def _gain(task: _Task, part: Judged) -> Judged:
         rows, columns = (f"{a}x{b}" for a, b in (shape, value.shape))
         task.wrong = (*task.wrong, name)
         return replace(part, reason=f"{letter} is {rows} here, yours is {columns}")
+    own = task.right.fields.get(name)
+    known, why = DIFFERENT, ""
+    if own is not None:
+        value, known, why = in_form_of(value, own, task.signs)
+        part = replace(part, value=value)
     task.gains[name] = value
     try:
-        own = task.right.fields.get(name)
-        other = task.right if value == own else task.right.with_gains({name: value})
+        other = task.right if known == EQUAL else task.right.with_gains({name: value})
     except CertificateRejected as rejected:
         if task.marking.decimals == "accept" and _is_rounded(task, part, value):
             return replace(part, verdict="right", hints=("rounded",))
+        if known == OPEN:
+            return replace(part, verdict="undecided", reason=why)
         if task.is_half:
             return replace(
                 part, verdict="undecided", reason=f"{' and '.join(task.right.gains)} are right together: give both"
@@ -528,8 +541,8 @@ def _gain(task: _Task, part: Judged) -> Judged:
         return replace(part, claims=((str(claim), False, "exact"),) if claim else ())
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
-    known = {condition.expression for condition in task.right.holds_where}
-    new = [c.expression for c in other.holds_where if c.expression not in known]
+    before = {condition.expression for condition in task.right.holds_where}
+    new = [c.expression for c in other.holds_where if c.expression not in before]
     hints = (f"not defined where {' or '.join(f'{value} = 0' for value in new)}",) if new else ()
     task.right = other
     claims = tuple((c.claim, True, c.how) for c in other.all_certificates[:1])
@@ -538,7 +551,7 @@ def _gain(task: _Task, part: Judged) -> Judged:
 
 def _gain_in(task: _Task, part: Judged) -> Matrix:
     """Return a gain with its sign in the standard convention."""
-    read = parse_matrix(part.given, task.names)
+    read = parse_matrix(part.given, task.names, functions=True)
     return -read if task.view.standard(part.letter)[1] < 0 else read
 
 
@@ -636,7 +649,7 @@ def _judged(task: _Task, part: Judged) -> Judged:
     if is_of_numbers and has_two_readings(given):
         return _unreadable(part, two_readings())
     try:
-        part = replace(part, value=_value(task, part))
+        part = replace(part, value=_in_form(task, _value(task, part), right))
         found = _holds(task, task.right, part)
         if found is not None:
             return replace(part, verdict="right", hints=found)
@@ -666,14 +679,25 @@ def _value(task: _Task, part: Judged) -> Matrix | Scalar | None:
     return read_like(found_in(task.right, part.name), part.given, task.names, variable, part.letter)
 
 
+def _in_form(task: _Task, value: Matrix | Scalar | None, right: Any) -> Matrix | Scalar | None:
+    """Return a value whose entries are written as the right ones that they equal, so that the others alone are wrong."""
+    if not isinstance(value, (Matrix, Scalar)) or not isinstance(right, (Matrix, Scalar)):
+        return value
+    return in_form_of(value, right, task.signs)[0] if functions_in([value, right]) else value
+
+
 def _holds(task: _Task, result: Result, part: Judged) -> tuple[str, ...] | None:
     """Return the hints on a value that is right for a result, None where it is not."""
     if part.name in result.claimed:
         matrix = Matrix.of([[part.value]]) if isinstance(part.value, Scalar) else part.value
         assert isinstance(matrix, Matrix)  # noqa: S101 - the right value exists, and is read like it
+        own = result.fields[part.name]
+        matrix, known, why = in_form_of(matrix, own, task.signs)
         try:
-            found = result.with_answer(part.name, matrix)
+            found = result if known == EQUAL else result.with_answer(part.name, matrix)
         except CertificateRejected:
+            if known == OPEN:
+                raise TooLarge(why) from None
             return None
         task.right = found if result is task.right else task.right
         return ()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from itertools import chain
+from math import floor
 from operator import add, mul, sub, truediv
 from typing import TYPE_CHECKING, Any
 
@@ -32,6 +33,7 @@ from symobs.ground.errors import BudgetExceeded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from fractions import Fraction
     from typing import TypeAlias
 
     from symobs.formula.expression.names import Scope
@@ -198,11 +200,12 @@ def _degree_of_root(base: Scalar, exponent: Number) -> int:
     return degree if 1 < degree <= _MOST_DEGREE and abs(exponent.fraction().numerator) <= _MOST_DEGREE else 0
 
 
-def _halves(exponent: Number) -> int:
-    """Return p where an exponent is p/2 with an odd p, else 0."""
-    if not isinstance(exponent, Scalar) or not exponent.is_constant or exponent.fraction().denominator != 2:
+def _times_halved(exponent: Number) -> int:
+    """Return n where an exponent is p/2ⁿ with an odd p and n from 1 to 4, else 0."""
+    if not isinstance(exponent, Scalar) or not exponent.is_constant:
         return 0
-    return exponent.fraction().numerator
+    denominator = exponent.fraction().denominator
+    return denominator.bit_length() - 1 if denominator in {2, 4, 8, 16} else 0
 
 
 class Evaluator:
@@ -273,11 +276,11 @@ class Evaluator:
         return self._combined(self._number(left), place, self._number(right), sign)
 
     def _power(self, base: Number, place: int, value: Number) -> Number:
+        value = written_out(value) if isinstance(value, Scalar) else value  # an exponent is exact
         if self.functions and isinstance(base, Scalar) and (degree := _degree_of_root(base, value)):
             return root_of_fraction(base.fraction(), degree) ** int(Complex.of(value).real.fraction() * degree)
-        if self.functions and isinstance(base, Scalar) and not base.is_constant and (half := _halves(value)):
-            whole = self._power(base, place, Scalar.of((half - 1) // 2))  # x^(q + 1/2) is x^q times the root of x
-            return self._combined(whole, place, self._function("sqrt", place, base), "*")
+        if self.functions and isinstance(base, Scalar) and not base.is_constant and (times := _times_halved(value)):
+            return self._power_of_root(base, place, Complex.of(value).real.fraction(), times)
         if self.instant and isinstance(value, Scalar) and self.instant in value.names:
             return self._power_in_steps(base, place, value)
         exponent = self._exponent(value, place)
@@ -287,6 +290,16 @@ class Evaluator:
             self._require_nonzero(base, place)
         self._spend(power_size(base, exponent), place)
         return base**exponent
+
+    def _power_of_root(self, base: Scalar, place: int, exponent: Fraction, times: int) -> Number:
+        """Return x^(p/2ⁿ) as x to a whole power, times powers of √x, √√x and so on."""
+        found, root = self._power(base, place, Scalar.of(floor(exponent))), base
+        binary = int((exponent - floor(exponent)) * 2**times)
+        for step in range(1, times + 1):
+            root = self._function("sqrt", place, root)
+            if binary >> (times - step) & 1:
+                found = self._combined(found, place, root, "*")
+        return found
 
     def _power_in_steps(self, base: Number, place: int, value: Scalar) -> Number:
         """Return λ to the power m k + n, with numbers m and n, as a function of k."""
