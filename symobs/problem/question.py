@@ -6,6 +6,7 @@ contains.  The page is a derivation like any other: what it states is checked, a
 
 from __future__ import annotations
 
+import itertools
 import string
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
@@ -190,7 +191,10 @@ def _slot(page: Builder, task: Task, name: str, value: Any) -> Slot:
     """Return a value as it stands in a sentence."""
     match task.keywords[name]:
         case "Poles":
-            letter = "phi_c" if name == "control_poles" or task.name == "state_feedback" else "phi_o"
+            own = "phi_o" if name == "observer_poles" or task.name.endswith("observer") else "phi_c"
+            # several designs have poles of their own
+            letters = itertools.chain((own,), (f"phi_{place}" for place in itertools.count(1)))
+            letter = next(x for x in letters if not page.defines(x) or page[x].value == value.polynomial)
             phi = page[letter] if page.defines(letter) else page.set(letter, value.polynomial)
             return Roots(phi.formula, tuple(root_of_pole(pole, page.plant.variable) for pole in value.poles))
         case "PolynomialText":

@@ -9,6 +9,7 @@ not repeated.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import prod
 from typing import TYPE_CHECKING
 
@@ -16,17 +17,20 @@ from symobs.exact import EIGENVALUE, Scalar
 from symobs.exact.algebraic.enclosure import sign_of_number
 from symobs.exact.algebraic.real_algebraic import integer_factor, real_roots
 from symobs.exact.core.generators import PI, function_named
-from symobs.exact.core.polynomial import by_monomial
+from symobs.exact.core.polynomial import by_monomial, discriminant
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 #: What may be declared of a symbol.  Each implies that the symbol is real.
 SIGNS = ("positive", "negative", "nonnegative", "nonpositive", "nonzero", "real")
 
 #: A polynomial with more terms than this is not factored: it counts as one factor.
 FACTORED_UP_TO = 1_500
+
+#: A polynomial with more terms than these is not looked at letter by letter, nor is its discriminant computed.
+_BY_LETTER_UP_TO, _BY_DISCRIMINANT_UP_TO, _DISCRIMINANT_OF_DEGREE = 60, 12, 6
 
 #: The side of 0 that a sign leaves to a parameter.
 _SIDE = {"positive": 1, "nonnegative": 1, "negative": -1, "nonpositive": -1}
@@ -147,7 +151,12 @@ def _sign_of_factor(factor: Scalar, signs: Mapping[str, str]) -> str:
         found = sign_of_number(factor)
     if found == "real":
         found = _sign_beyond_one(factor, signs)
-    return _sign_without_roots(factor, signs) if found == "real" else found
+    if found == "real":
+        found = _sign_without_roots(factor, signs)
+    if found in {"real", "nonnegative", "nonpositive"} and 1 < factor.size <= _BY_LETTER_UP_TO:
+        known = tuple((name, signs.get(name) or _sign_of_undeclared(name, signs)) for name in sorted(factor.names))
+        found = _sign_by_letters(factor, known, found)
+    return found
 
 
 def _sign_beyond_one(factor: Scalar, signs: Mapping[str, str]) -> str:
@@ -177,6 +186,72 @@ def _sign_without_roots(factor: Scalar, signs: Mapping[str, str]) -> str:
     if any(not side or root.sign == side for root in real_roots(polynomial)):
         return "real"
     return "positive" if polynomial(side or 1) > 0 else "negative"
+
+
+@lru_cache(maxsize=10_000)
+def _sign_by_letters(factor: Scalar, declared: tuple[tuple[str, str], ...], known: str) -> str:
+    """Return the sign of a polynomial that its coefficients as a polynomial in one of its letters show.
+
+    Nothing is found beside an eigenvalue, or a root of which nothing is known: they may be complex.
+    """
+    signs = dict(declared)
+    if EIGENVALUE in signs or any(function_named(name) and sign not in _KNOWN for name, sign in declared):
+        return known
+    for name in factor.names:
+        found = _sign_in_letter(factor.coefficients(name), name, signs)
+        if found in _NEVER_ZERO:
+            return found
+        known = found if known == "real" else known
+    found = (
+        ("real",) if factor.size > _BY_DISCRIMINANT_UP_TO else (_sign_beside(factor, n, signs) for n in factor.names)
+    )
+    return next((sign for sign in found if sign != "real"), known)
+
+
+def _sign_beside(factor: Scalar, name: str, signs: Mapping[str, str]) -> str:
+    """Return the sign of a polynomial that has no root in one letter x at a point, and so none at any other.
+
+    Where neither its leading coefficient nor its discriminant vanishes, nor its value at an end x = 0 of the values of x,
+    the number of its roots in x is the same at all values of the other letters, whose signs leave a connected set.
+    """
+    others = {n: "real" if sign == "nonzero" else sign for n, sign in signs.items() if n != name}
+    if not 2 < factor.degree(name) <= _DISCRIMINANT_OF_DEGREE or not others:
+        return "real"
+    lead, *_, last = factor.coefficients(name)
+    ends = (lead, last) if signs[name] in _SIDE else (lead,)
+    if not all(never_zero(end, others) for end in ends) or not never_zero(discriminant(factor, name), others):
+        return "real"
+    found = sign_of(factor.substitute({n: Scalar.of(_SIDE.get(sign, 1)) for n, sign in others.items()}), signs)
+    return found if found in {"positive", "negative"} else "real"
+
+
+def _sign_in_letter(coefficients: Sequence[Scalar], name: str, signs: Mapping[str, str]) -> str:
+    """Return the sign of Σ cᵢ xⁱ, the highest first, from the signs of the cᵢ, or by completing the square.
+
+    With y = xᵏ and s = 4γ − β²/α the value times 4α is (2αy + β)² + α s: where α and γ are not negative and s is
+    positive wherever it stands, the value is not negative, and 0 at most where α = 0 and so β = 0, as γ.
+    """
+    total, degree = "zero", len(coefficients) - 1
+    for power, coefficient in zip(range(degree, -1, -1), coefficients, strict=True):
+        if not coefficient.is_zero:
+            part = sign_of(coefficient, signs)
+            total = _sum_sign(total, _product_sign(part, _power_sign(signs[name], power)) if power else part)
+    if total != "real" or degree % 2:
+        return total
+    lead, middle, last = coefficients[0], coefficients[degree // 2], coefficients[-1]
+    if any(c for power, c in enumerate(coefficients) if power not in {0, degree // 2, degree}):
+        return total
+    outer = {sign_of(lead, signs), sign_of(last, signs)}
+    side = next((s for s in ("nonnegative", "nonpositive") if outer <= {s, _WEAK[s]}), None)
+    if side is None:
+        return total
+    rest = 4 * last - middle**2 / lead
+    if not never_zero(rest.denominator, signs):
+        return total
+    of_rest = sign_of(rest, signs)
+    if of_rest == _WEAK[side] and sign_of(last, signs) == _WEAK[side]:
+        return _WEAK[side]
+    return side if of_rest in {side, _WEAK[side], "zero"} else total
 
 
 def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:

@@ -67,6 +67,7 @@ from symobs.proof.derivation.steps import (
 )
 from symobs.proof.derivation.wording_check import (
     Said,
+    demands,
     fits,
     formula_in,
     reject_other_map,
@@ -77,7 +78,7 @@ from symobs.stability.criteria.stability import monic
 from symobs.system.conditions import vanishing_factors
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from symobs.formula.figures import Picture
 
@@ -103,6 +104,8 @@ class Derivation:
         known: Environment | None = self.__dict__.get("_checked")
         if known is None:
             known = _walk(self.steps, self.start, self.discrete)
+            if (broken := _broken_promise(self.steps)) is not None:
+                reject(f"{broken}, which promises cases that do not follow,")
             object.__setattr__(self, "_checked", known)
         return known
 
@@ -115,6 +118,25 @@ def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> 
             message = f"a step of kind {type(step).__name__} cannot be read: {error}"
             raise DerivationRejected(message, repair=BUG, line=str(step)) from error
     return environment
+
+
+def _broken_promise(steps: tuple[Step, ...]) -> str | None:
+    """Return the phrase of a sentence that promises cases after which there are none, nor one that is undecided."""
+    broken = None
+    for step in _in_order(steps):
+        key = getattr(getattr(step, "sentence", None), "key", "")
+        if isinstance(step, CaseStep) or demands(key, "leaves_undecided"):
+            broken = None
+        elif demands(key, "promises_cases"):
+            broken = key
+    return broken
+
+
+def _in_order(steps: tuple[Step, ...]) -> Iterator[Step]:
+    """Yield the steps of a derivation, those of its sections among them."""
+    for step in steps:
+        yield step
+        yield from _in_order(step.steps) if isinstance(step, Section) else ()
 
 
 def inside_case(step: CaseStep, environment: Environment) -> Environment:

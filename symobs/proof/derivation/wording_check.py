@@ -1002,7 +1002,7 @@ _APPLIES: dict[str, tuple[str, str]] = {
 }
 
 #: Every obligation that a phrase may declare in its `DEMANDS`, several of them parted by commas.
-OBLIGATIONS = frozenset({*_OF_SLOTS, *_OF_STEP, *_SETS, *_APPLIES})
+OBLIGATIONS = frozenset({*_OF_SLOTS, *_OF_STEP, *_SETS, *_APPLIES, "promises_cases", "leaves_undecided"})
 
 
 def obligations(demanded: str) -> list[list[str]]:
@@ -1021,6 +1021,11 @@ def require_known(demands: Mapping[str, str]) -> None:
 
 
 require_known(DEMANDS)
+
+
+def demands(key: str, name: str) -> bool:
+    """Return whether a phrase has an obligation."""
+    return [name] in obligations(DEMANDS.get(key, ""))
 
 
 def _owed(key: str, table: Mapping[str, Any]) -> list[tuple[Any, list[str]]]:

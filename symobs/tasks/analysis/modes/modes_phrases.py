@@ -82,6 +82,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 DEMANDS: dict[str, str] = {
+    "pbh_provided": "promises_cases",
     "never_detectability": "modes_unstable C A N X mu",
     "never_stabilizability": "modes_unstable Bᵀ Aᵀ N X mu",
     "pbh_low_observability": "unseen C A, of_low_rank",

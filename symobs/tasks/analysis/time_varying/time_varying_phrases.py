@@ -74,6 +74,7 @@ QUESTIONS: dict[str, str] = {
 }
 
 DEMANDS: dict[str, str] = {
+    "closed_form_if": "promises_cases",
     "gramian_regular": "nonsingular W",
     "gramian_singular": "vanishes C Phi v",
     "never_seen_start": "vanishes C Phi v",

@@ -311,11 +311,17 @@ def test_margins_of_an_optimal_loop() -> None:
     assert (found["gain_down"], found["gain_up"], found["slowest"]) == (sympy.Rational(1, 3), sympy.oo, -2)
 
 
-def test_a_case_whose_loop_is_not_seen_to_be_stable_is_undecided() -> None:
-    """Of two equal columns the pair is controllable but where b = −(a + 1)(a² + a + 1), and there nothing is told."""
+def test_the_loop_of_a_case_is_stable_because_a_sum_under_a_root_cannot_vanish() -> None:
+    """Of two equal columns the pair is controllable but where b = −(a + 1)(a² + a + 1); K there is SciPy's."""
     plant = symobs.StateSpace("[-1 b; -a 0]", "[a+1 a+1; -1 -1]", symbols={"a": "real", "b": "real"})
     (case,) = symobs.lqr(plant, Q="1", R="1").case_tree
-    assert case.result is None
+    assert case.result is not None
+    for a in (-3, -0.5, 2, 7):
+        b = -(a + 1) * (a**2 + a + 1)
+        A, B = np.array([[-1, b], [-a, 0]]), np.array([[a + 1, a + 1], [-1, -1]])
+        K = B.T @ solve_continuous_are(A, B, np.eye(2), np.eye(2))
+        found = case.result.K.subs("a", sympy.nsimplify(a)).evalf()
+        assert np.allclose(np.array(found, dtype=float), K)
 
 
 def test_a_factor_that_is_stable_as_it_is_written_is_so_in_any_form() -> None:
