@@ -32,7 +32,7 @@ from symobs.formula.tree import (
 from symobs.formula.tree.term import block
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import CaseStep, Note, Step
-from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
+from symobs.proof.derivation.builder import Builder, differs, predicate, relation, sentence
 from symobs.proof.derivation.facts import on_stratum, polynomial_of
 from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.simplify import as_inequality
@@ -339,6 +339,8 @@ def stratum_of(case: Case) -> Relation | Conjunction:
 def as_written(condition: Condition) -> Relation:
     """Return a condition, solved where that is possible."""
     operator = condition.operator.replace("==", "=")
+    if operator == "!=":
+        return differs(condition.expression)
     left, right = solved(condition.expression, operator)
     return relation(left, operator, right)
 

@@ -15,7 +15,7 @@ from symobs.formula.convention import convention_named
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import UsageError
-from symobs.system.conditions import Condition
+from symobs.system.conditions import Condition, SumOfSquares
 from symobs.system.reading import has_decimals
 
 if TYPE_CHECKING:
@@ -82,7 +82,9 @@ def to_sympy(value: Any, objects: Mapping[str, Any]) -> Any:
     if isinstance(value, Shifted):
         return conversion.scalar_to_sympy(value.value, objects) - conversion.root_to_sympy(value.root, objects)
     if isinstance(value, Condition):
-        return conversion.relation_to_sympy(value.expression, value.operator, objects)
+        expression, operator = value.expression, value.operator
+        parts = expression.parts if isinstance(expression, SumOfSquares) and operator == "!=" else (expression,)
+        return conversion.relation_to_sympy(parts, operator, objects)
     if isinstance(value, tuple) and value and all(isinstance(row, tuple) and _are_factored(row) for row in value):
         return conversion.table_to_sympy(value, objects)
     if isinstance(value, (list, tuple)):
