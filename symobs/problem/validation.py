@@ -81,7 +81,8 @@ class Problem:
         results: list[Result] = []
         errors = Errors()
         undecided: list[Undecided] = []
-        first = [task for task in (task_named(self.plant_of),) if task is not None and task not in self.tasks]
+        named = task_named(self.plant_of) if self.plant_of else None
+        first = [] if named is None or named in self.tasks else [named]
         plant: Any = self.plant
         for task in (*first, *self.tasks):
             if report is not None:
@@ -115,8 +116,10 @@ class Problem:
     def _specification_of(self, task: Task) -> Mapping[str, Any]:
         """Return the specification of a task: of several tasks, a method is for those that have it."""
         name = self.specification.get("method")
+        if name in {None, "auto"}:  # the methods of all tasks are looked at only where one is named
+            return self.specification
         having = [each for each in self.tasks if f"{each.name}/{name}" in methods(each.name)]
-        if name in {None, "auto"} or task in having or not having:
+        if task in having or not having:
             return self.specification
         return {key: value for key, value in self.specification.items() if key != "method"}
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from importlib import import_module
 
 import pytest
 
+from tests.support.paths import ROOT
 from tests.support.tools.command_line import EXAMPLES, SAFETY, SERVO, environment
 
 HEAVY = {"control", "matplotlib", "mpmath", "numpy", "scipy", "sympy", "z3"}
@@ -123,6 +125,31 @@ design.to_latex(), design.to_json(), design.verdict, repr(design)
 def test_only_latex_needs_its_templates() -> None:
     for form in ("json", "text", "html", "markdown"):
         assert "jinja2" not in after("solve", str(SERVO), "--format", form)
+
+
+#: The tasks in the modules that the solution of an example loads: its own, those beside it, and what it stands on.
+_RANKS = {"controllability", "observability"}
+_STANDS_ON = {
+    "detectable": _RANKS | {"detectability", "stabilizability"},
+    "lyapunov": {"lyapunov"},
+    "servo_observer": _RANKS | {"observer", "response", "initial_state", "matrix_exponential"},
+    "zero_order_hold": {"zero_order_hold", "matrix_exponential"},
+}
+
+
+@pytest.mark.parametrize("example", _STANDS_ON)
+def test_a_solution_loads_the_modules_of_its_task_alone(example: str) -> None:
+    found = after("solve", str(EXAMPLES[0].with_stem(example)), "--format", "json")
+    assert {task for module in found for task in _tasks_in(module)} == _STANDS_ON[example]
+
+
+def _tasks_in(module: str) -> list[str]:
+    """The tasks that stand in a module of symobs."""
+    if not module.startswith("symobs.tasks."):
+        return []
+    path = ROOT.joinpath(*module.split(".")).with_suffix(".py")
+    source = path.read_text("utf-8") if path.exists() else ""
+    return re.findall(r"^@task[^\n]*\n(?:@[^\n]*\n)*def (\w+)\(", source, re.MULTILINE)
 
 
 def test_tasks_and_formats_are_listed_without_importing_one() -> None:

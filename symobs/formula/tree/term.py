@@ -61,19 +61,19 @@ class Term:
         return Literal(Scalar.of(other) if isinstance(other, int) else other)
 
     def __add__(self, other: Term | Scalar | Matrix | int) -> Term:
-        return self._with(Sum((*_terms(self.formula), *_terms(self._read(other)))), other)
+        return self._with(Sum((*terms_of(self.formula), *terms_of(self._read(other)))), other)
 
     def __sub__(self, other: Term | Scalar | Matrix | int) -> Term:
-        return self._with(Sum((*_terms(self.formula), Negative(self._read(other)))), other)
+        return self._with(Sum((*terms_of(self.formula), Negative(self._read(other)))), other)
 
     def __neg__(self) -> Term:
         return self._with(Negative(self.formula))
 
     def __matmul__(self, other: Term) -> Term:
-        return self._with(Product((*_factors(self.formula), *_factors(other.formula))), other)
+        return self._with(Product((*factors_of(self.formula), *factors_of(other.formula))), other)
 
     def __mul__(self, other: Term | Scalar | int) -> Term:
-        return self._with(Product((*_factors(self.formula), *_factors(self._read(other)))), other)
+        return self._with(Product((*factors_of(self.formula), *factors_of(self._read(other)))), other)
 
     def __truediv__(self, other: Term | Scalar | int) -> Term:
         return self._with(Quotient(self.formula, self._read(other)), other)
@@ -135,11 +135,13 @@ def _environment_of(*terms: Term) -> Environment:
     return max((term.environment for term in terms), key=lambda environment: environment.age)
 
 
-def _terms(formula: Formula) -> tuple[Formula, ...]:
+def terms_of(formula: Formula) -> tuple[Formula, ...]:
+    """Return the terms of a sum, or what is none alone."""
     return formula.terms if isinstance(formula, Sum) else (formula,)
 
 
-def _factors(formula: Formula) -> tuple[Formula, ...]:
+def factors_of(formula: Formula) -> tuple[Formula, ...]:
+    """Return the factors of a product, or what is none alone."""
     return formula.factors if isinstance(formula, Product) else (formula,)
 
 

@@ -1,7 +1,7 @@
 """Sentences: phrases with filled slots, and mathematics for names between dollar signs.
 
-`$A - L C$` in a phrase is a formula in the letters of `notation`, so that it is printed as everywhere else: sums of
-products of letters, `ᵀ` behind a letter, `=` between two of them.  It names things and claims nothing.
+`$A - L C$` in a phrase is a formula in the letters of `notation`, so that it is printed as everywhere else.  It names things
+and claims nothing.
 """
 
 from __future__ import annotations
@@ -24,17 +24,14 @@ from symobs.formula.tree import (
     HoldsExactlyWhere,
     Letter,
     Literal,
-    Negative,
     Predicate,
-    Product,
     Relation,
     Roots,
     SignReversal,
-    Sum,
     SymbolList,
-    Transpose,
     children,
 )
+from symobs.formula.tree.written import read_formula, read_relation
 from symobs.pages.page.blocks import is_beside, row_by_row
 from symobs.pages.page.detail_level import at_detail
 
@@ -163,32 +160,12 @@ def _once(relation: Relation, letters: Mapping[str, str]) -> Relation | Formula:
 def _prose(text: str, turned: SignReversal, letters: Mapping[str, str]) -> Iterator[Inline]:
     for place, part in enumerate(text.split("$")):
         if place % 2:
-            named = _named(part)
-            yield _once(turned.relation(named), letters) if isinstance(named, Relation) else turned.formula(named)
+            equation = "=" in part
+            yield (
+                _once(turned.relation(read_relation(part)), letters) if equation else turned.formula(read_formula(part))
+            )
         else:
             yield part
-
-
-def _named(text: str) -> Formula | Relation:
-    members = tuple(_sum(member) for member in text.split("="))
-    return Relation(members, ("=",) * (len(members) - 1)) if len(members) > 1 else members[0]
-
-
-def _sum(text: str) -> Formula:
-    terms = tuple(
-        Negative(_product(term)) if sign in {"-", "−"} else _product(term)
-        for sign, term in re.findall(r"([-−+]?)\s*([^-−+]+)", text.strip())
-    )
-    return terms[0] if len(terms) == 1 else Sum(terms)
-
-
-def _product(text: str) -> Formula:
-    factors = tuple(_factor(name) for name in text.split())
-    return factors[0] if len(factors) == 1 else Product(factors)
-
-
-def _factor(name: str) -> Formula:
-    return Transpose(Letter(name[:-1])) if name.endswith("ᵀ") else Letter(name)
 
 
 # What the sentences of a page refer to: the literature, numbered in the order of the page, and equations before them.

@@ -34,6 +34,7 @@ from symobs.formula.tree import (
 )
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.formula.tree.term import Term
+from symobs.formula.tree.written import OPERATORS, written, written_relation
 from symobs.ground.errors import DerivationRejected, SymobsWarning
 from symobs.proof.certificate.claims import UNREADABLE, as_scalar, can_be_shown, verify
 from symobs.proof.derivation.check import Derivation, after, inside_case, with_domain
@@ -266,8 +267,16 @@ class Builder:
         """Return a term in the current environment."""
         return Term(formula, self.environment)
 
-    def __getitem__(self, names: str) -> Term:
-        return self.term(Letter(names))
+    def __getitem__(self, text: str) -> Term:
+        return self.term(Letter(text)) if text.isidentifier() else written(text, self.environment)
+
+    def __call__(self, text: str, **slots: Member | str) -> Term:
+        """Return a term written as text; a slot is a value, a term, or the letter of the page for one of the text."""
+        return written(text, self.environment, **slots)
+
+    def line(self, text: str, **slots: Member | str) -> Relation:
+        """Return a relation written as text, with slots."""
+        return written_relation(text, self.environment, **slots)
 
     def value(self, value: Scalar | Matrix | int) -> Term:
         """Return a value written out."""
@@ -329,6 +338,7 @@ class Builder:
 
         A `value` that is known already is not evaluated here; the check evaluates it.
         """
+        members = tuple(self[m] if isinstance(m, str) and m not in OPERATORS else m for m in members)
         chain = [self.value(m) if not isinstance(m, (Term, str)) else m for m in members]
         exact = [m for m in chain if isinstance(m, Term) and not isinstance(m.formula, Decimals)]
         if value is None:
@@ -346,9 +356,12 @@ class Builder:
         if shown:
             self.equal(relation(self[name], *shown), say="in_decimals")
 
-    def conclude_silently(self, *facts: Fact) -> None:
+    def conclude_silently(self, *facts: Fact | str) -> None:
         """Hold the page to facts that need no words."""
-        self.steps.append(Conclude(None, facts))
+        self.steps.append(Conclude(None, self._facts(facts)))
+
+    def _facts(self, facts: tuple[Fact | str, ...]) -> tuple[Fact, ...]:
+        return tuple(self.line(fact) if isinstance(fact, str) else fact for fact in facts)
 
     def assume_positive(self, values: Sequence[Scalar]) -> None:
         """State that values are positive throughout; values that are none say nothing."""
@@ -365,39 +378,42 @@ class Builder:
         self.environment = self.environment.extended_by(coefficients={name: meaning})
         return symbol
 
-    def signal(self, name: str, formula: Term, say: str = "", *, silent: bool = False, **slots: Slot) -> Term:
+    def signal(self, name: str, formula: Term | str, say: str = "", *, silent: bool = False, **slots: Slot) -> Term:
         """Define a signal by others; a free signal ceases to be free."""
+        formula = self[formula] if isinstance(formula, str) else formula
         because = sentence(say, slots) if say else None
         self.steps.append(Define(relation(self[name], formula), because, silent=silent))
         self.environment = self.environment.extended_by(signals={name: formula.formula})
         return self[name]
 
-    def dynamics(self, name: str, formula: Term, say: str = "", *, silent: bool = False, **slots: Slot) -> None:
+    def dynamics(self, name: str, formula: Term | str, say: str = "", *, silent: bool = False, **slots: Slot) -> None:
         """Give the derivative (shift) of a free signal."""
+        formula = self[formula] if isinstance(formula, str) else formula
         because = sentence(say, slots) if say else None
         target = self.term(Derivative(Letter(name)))
         self.steps.append(Define(relation(target, formula), because, silent=silent))
         self.environment = self.environment.extended_by(dynamics={name: formula.formula})
 
-    def equal(self, *relations: Relation, say: str = "", answer: bool = False, **slots: Slot) -> None:
+    def equal(self, *relations: Relation | str, say: str = "", answer: bool = False, **slots: Slot) -> None:
         """Show relations on one display."""
-        self.steps.append(Equal(relations, sentence(say, slots) if say else None, answer))
+        lines = (self.line(each) if isinstance(each, str) else each for each in relations)
+        self.steps.append(Equal(tuple(lines), sentence(say, slots) if say else None, answer))
 
-    def verified(self, key: str, *facts: Fact, **slots: Slot) -> None:
+    def verified(self, key: str, *facts: Fact | str, **slots: Slot) -> None:
         """Show the check of an answer."""
-        self.steps.append(Conclude(sentence(key, slots), facts, verified=True))
+        self.steps.append(Conclude(sentence(key, slots), self._facts(facts), verified=True))
 
-    def conclude(self, key: str, *facts: Fact, **slots: Slot) -> None:
+    def conclude(self, key: str, *facts: Fact | str, **slots: Slot) -> None:
         """State a finding."""
-        self.steps.append(Conclude(sentence(key, slots), facts))
+        self.steps.append(Conclude(sentence(key, slots), self._facts(facts)))
 
-    def caution(self, key: str, *facts: Fact, **slots: Slot) -> None:
+    def caution(self, key: str, *facts: Fact | str, **slots: Slot) -> None:
         """Warn as an expert would."""
-        self.steps.append(Note(sentence(key, slots), facts, caution=True))
+        self.steps.append(Note(sentence(key, slots), self._facts(facts), caution=True))
 
-    def remark(self, key: str, *facts: Fact, **slots: Slot) -> None:
+    def remark(self, key: str, *facts: Fact | str, **slots: Slot) -> None:
         """Remark."""
-        self.steps.append(Note(sentence(key, slots), facts))
+        self.steps.append(Note(sentence(key, slots), self._facts(facts)))
 
     def diagram(self, name: str, say: str = "", **labels: Member | Conjunction) -> None:
         """Draw a figure of `flow` with these gains; its signals have their own letters unless others are given."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
-from symobs.exact import Ideal, Matrix, Scalar, product_of
+from symobs.exact import Ideal, Matrix, Scalar, TooLarge, product_of
 from symobs.formula.phrases import ASSERTS, NAMING
 from symobs.formula.phrases.languages import SPOKEN
 from symobs.formula.tree import (
@@ -114,6 +114,8 @@ def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> 
     for step in steps:
         try:
             environment = after(step, environment, discrete)
+        except TooLarge:
+            raise
         except UNREADABLE as error:
             message = f"a step of kind {type(step).__name__} cannot be read: {error}"
             raise DerivationRejected(message, repair=BUG, line=str(step)) from error

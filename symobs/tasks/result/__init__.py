@@ -13,7 +13,7 @@ from symobs.tasks.result.registry import (
     task_named,
     tasks,
 )
-from symobs.tasks.result.result import Case, Document, Result, Stratum, equality
+from symobs.tasks.result.result import Case, Document, Result, Stratum, equality, holds
 from symobs.tasks.result.writers import format_named, formats, output_format, page_of, render
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "equality",
     "format_named",
     "formats",
+    "holds",
     "method",
     "methods",
     "output_format",

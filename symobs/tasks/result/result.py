@@ -11,8 +11,11 @@ from functools import cache, cached_property, partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, Self, TypeAlias, Unpack, overload
 
+from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.convention import STANDARD
+from symobs.formula.tree import Environment
+from symobs.formula.tree.written import written_relation
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, DerivationRejected, Undecided
 from symobs.proof.certificate.claims import BEYOND_LIMITS, UNREADABLE, Certificate, Claim, Statement, check_all
@@ -27,10 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
-    from symobs.exact import Matrix, Scalar
     from symobs.formula.convention import Convention
     from symobs.formula.figures import Picture
-    from symobs.formula.tree import Environment
     from symobs.proof.derivation import Derivation
     from symobs.proof.derivation.builder import Member
     from symobs.system import StateSpace
@@ -47,6 +48,11 @@ Code: TypeAlias = Literal["c", "matlab", "modelica", "python"]
 def equality(left: Member, right: Member, environment: Environment, says: str = "") -> Claim:
     """Return the claim that two members are equal."""
     return Claim(relation(left, right), environment, says)
+
+
+def holds(environment: Environment, text: str, says: str = "", **slots: Any) -> Claim:
+    """Return the claim that a relation written as text holds; `says` is what a certificate prints instead."""
+    return Claim(written_relation(text, environment, **slots), environment, says)
 
 
 @dataclass
@@ -175,6 +181,12 @@ class Result(TaskTraits):
         """What is true where a condition of existence fails."""
         return ()
 
+    def meanings(self, **further: Any) -> Environment:
+        """Return the environment of the claims: the plant, the answers that have a value, and further letters."""
+        values = {name: getattr(self.plant.matrices, name) for name in "ABCD"} | {**self.answer, **further}
+        found = {name: value for name, value in values.items() if isinstance(value, (Matrix, Scalar))}
+        return Environment(variable=self.plant.variable, values=found, signs=self.plant.symbols.signs)
+
     # -- conditions ----------------------------------------------------------------------------------------------------
 
     @property
@@ -253,7 +265,7 @@ class Result(TaskTraits):
         written = page.derivation()
         try:
             established = written.check()
-        except DerivationRejected:
+        except (DerivationRejected, TooLarge):
             written = without_failing_cases(written)
             established = written.check()
         for name, value in self.data.items():

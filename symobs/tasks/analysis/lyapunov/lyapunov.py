@@ -19,7 +19,7 @@ from symobs.exact import (
     primitive_kernel,
     solve_or_refute,
 )
-from symobs.formula.tree import Environment, HoldsExactlyWhere
+from symobs.formula.tree import HoldsExactlyWhere
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, Undecided
 from symobs.proof.certificate.claims import Claim
@@ -27,10 +27,10 @@ from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import StabilityVerdict, stability
 from symobs.stability.inequalities.simplify import as_inequality, cleared, simplify
-from symobs.system.conditions import joined, nonzero, sign_of, vanishing_factors
+from symobs.system.conditions import sign_of, vanishing_factors
 from symobs.system.specification import over_common_data, read_symmetric
 from symobs.tasks.analysis.page_parts import case_steps, determinant_form, given
-from symobs.tasks.analysis.strata.strata import common_places, found_once, places, solved
+from symobs.tasks.analysis.strata.strata import PutAgain
 from symobs.tasks.analysis.time_response.horizons import (
     MOST_STATES,
     MOST_WITH_PARAMETERS,
@@ -38,20 +38,18 @@ from symobs.tasks.analysis.time_response.horizons import (
     symmetric,
     upper_entries,
 )
-from symobs.tasks.result import Case, Result, choose, equality, method, page_of, task
+from symobs.tasks.result import Result, choose, holds, method, page_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symobs.formula.tree.term import Term
+    from symobs.formula.tree import Environment
     from symobs.system import StateSpace
-    from symobs.system.conditions import Condition
     from symobs.system.specification import Intensity, Name
-    from symobs.tasks.analysis.strata.strata import Place
 
 
 @dataclass
-class LyapunovSolution(Result):
+class LyapunovSolution(PutAgain):
     """P with AᵀP + PA = −Q, the only one where det χ(−A) ≠ 0.
 
     Where that vanishes, N ≠ 0 with AᵀN + NA = 0 may be added to P, or an X with AX + XAᵀ = 0 and tr QX ≠ 0 excludes a P.
@@ -59,6 +57,7 @@ class LyapunovSolution(Result):
 
     weight: Matrix
 
+    inputs = ("weight",)
     task: ClassVar[str] = "lyapunov"
     answered_by = ("P", "positive_definite")
     claimed = ("P",)
@@ -89,41 +88,39 @@ class LyapunovSolution(Result):
 
     def claims(self) -> Iterator[Claim]:
         """Yield the equation of P and its symmetry; that it is the only one, or not; or that there is none."""
-        answer, discrete = self.answer, self.plant.is_discrete
-        given_values = {name: value for name, value in answer.items() if value is not None}
-        is_unique = not answer["determinant"].is_zero
-        if (answer["P"] is None) != (answer["X"] is not None) or (answer["N"] is None) != (
-            is_unique or answer["P"] is None
-        ):
+        P, N, X, determinant = (self.answer[name] for name in ("P", "N", "X", "determinant"))
+        if (P is None) != (X is not None) or (N is None) != (not determinant.is_zero or P is None):
             message = (
                 "there is no P exactly where an X shows that there is none, and one P where the determinant is not 0"
             )
             raise CertificateRejected(message)
-        values = given_values | {"A": self.plant.matrices.A, "Q": self.weight, "image": _image(self.plant)}
-        e = Environment(variable=self.plant.variable, values=values, signs=self.plant.symbols.signs)
-        A, Q = e["A"], e["Q"]
-        zero = Matrix.zeros(*self.weight.shape)
-        yield equality(Q, Q.T, e, "Q = Q.T")
-        yield equality(e["image"].apply("det"), e["determinant"], e, "determinant of the image of A")
-        if is_unique:
-            yield Claim(relation(e["determinant"], "!==", 0), e, "the determinant is not 0")
-        if answer["X"] is not None:
-            X = e["X"]
-            moved = A @ X @ A.T - X if discrete else A @ X + X @ A.T
-            yield equality(moved, zero, e, "A*X*A.T - X = 0" if discrete else "A*X + X*A.T = 0")
-            yield equality(X, X.T, e, "X = X.T")
-            yield Claim(relation(trace(self.weight, answer["X"]), "!==", 0), e, "trace of Q*X is not 0")
+        e = self.meanings(Q=self.weight, image=_image(self.plant))
+        yield holds(e, "Q = Q.T")
+        yield holds(e, "det(image) = determinant", "determinant of the image of A")
+        if not determinant.is_zero:
+            yield holds(e, "determinant !== 0", "the determinant is not 0")
+        if X is not None:
+            yield holds(e, f"{self.transposed} = 0")
+            yield holds(e, "X = X.T")
+            yield holds(e, "{trace} !== 0", "trace of Q*X is not 0", trace=self.obstacle)
             return
-        P = e["P"]
-        said = "A.T*P*A - P = -Q" if discrete else "A.T*P + P*A = -Q"
-        yield equality(_moved(A, P, discrete=discrete), -Q, e, said)
-        yield equality(P, P.T, e, "P = P.T")
-        if answer["N"] is not None:
-            N = e["N"]
-            yield equality(_moved(A, N, discrete=discrete), zero, e, said.replace("P", "N").replace("-Q", "0"))
-            yield equality(N, N.T, e, "N = N.T")
-            yield Claim(relation(N, "!==", zero), e, "N is not 0")
+        yield holds(e, f"{self.left} = -Q")
+        yield holds(e, "P = P.T")
+        if N is not None:
+            yield holds(e, f"{self.left.replace('P', 'N')} = 0")
+            yield holds(e, "N = N.T")
+            yield holds(e, "N !== 0", "N is not 0")
         yield from self._about_minors(e)
+
+    @property
+    def left(self) -> str:
+        """The left side of the equation."""
+        return "A.T*P*A - P" if self.plant.is_discrete else "A.T*P + P*A"
+
+    @property
+    def transposed(self) -> str:
+        """The left side of the equation of X."""
+        return "A*X*A.T - X" if self.plant.is_discrete else "A*X + X*A.T"
 
     def _about_minors(self, e: Environment) -> Iterator[Claim]:
         """Yield the signs from which it follows whether P is positive definite."""
@@ -175,37 +172,14 @@ class LyapunovSolution(Result):
         return StabilityVerdict(found.verdict, found.positive)
 
     @property
-    def further_data(self) -> tuple[Matrix, ...]:
-        """The weight Q."""
-        return (self.weight,)
-
-    @property
     def existence(self) -> tuple[Scalar, ...]:
         """The determinant that vanishes where the solution is not unique."""
         return () if self.answer["determinant"].is_zero else (self.answer["determinant"],)
 
-    @cached_property
-    def holds_where(self) -> tuple[Condition, ...]:
-        """The domain, the determinant, and the denominators of P where it is one of many."""
-        found = nonzero("existence", vanishing_factors(self.existence, self.plant.symbols.signs))
-        return joined((*self.domain, *found), super().holds_where)
-
-    @cached_property
-    def case_tree(self) -> tuple[Case, ...]:
-        """The question again where the solution is not unique, or where there is one after all."""
-
-        def on(there: StateSpace, values: dict[str, Scalar]) -> Result:
-            Q = modulo(self.weight.substitute(values), there.ideal)
-            return found_once(type(self), there, Q, self.method)
-
-        return solved(self.plant, self._places, on)
-
     @property
-    def _places(self) -> tuple[Place, ...]:
-        if self.answer["X"] is not None:
-            obstacle = trace(self.weight, self.answer["X"]).numerator
-            return () if obstacle.is_constant else common_places(self.plant, [obstacle])
-        return places(self.plant, [c.expression for c in self.holds_where if c.kind != "domain"])
+    def obstacle(self) -> Scalar | None:
+        """Tr QX, which would be 0 if there were a P."""
+        return None if self.answer["X"] is None else trace(self.weight, self.answer["X"])
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -232,10 +206,6 @@ def _image(plant: StateSpace) -> Matrix:
     for coefficient in total:
         found = found @ moved + Matrix.identity(A.shape[0]) * coefficient
     return modulo(found.normal(), plant.ideal)
-
-
-def _moved(A: Term, P: Term, *, discrete: bool) -> Term:
-    return A.T @ P @ A - P if discrete else A.T @ P + P @ A
 
 
 def trace(Q: Matrix, X: Matrix) -> Scalar:
@@ -298,54 +268,42 @@ def _solve(page: Builder, result: LyapunovSolution) -> None:
     if result.answer["X"] is not None:
         _tell_refusal(page, result)
         return
-    _tell_entries(page)
-    discrete, zero = page.plant.is_discrete, Matrix.zeros(*result.weight.shape)
+    _tell_entries(page, result)
     if result.answer["N"] is not None:
         page.set("N_l", result.answer["N"])
     say = "lyapunov_solution" if result.answer["N"] is None else "lyapunov_one_of_many"
-    P = page.define("P_l", page.value(result.answer["P"]), say=say, answer=True, closing=False)
-    equation = relation(_moved(page["A"], P, discrete=discrete), -page["Q_l"])
-    page.verified("lyapunov_checked", equation=equation)
+    page.define("P_l", page.value(result.answer["P"]), say=say, answer=True, closing=False)
+    page.verified("lyapunov_checked", equation=page.line(f"{result.left} = -Q_l", P="P_l"))
     if result.answer["N"] is not None:
-        N = page["N_l"]
-        nothing = relation(_moved(page["A"], N, discrete=discrete), zero)
-        page.equal(relation(N, N.as_value), nothing, say="lyapunov_added")
+        page.equal("N_l = #", page.line(f"{result.left} = 0", P="N_l"), say="lyapunov_added")
         return
     _tell_definiteness(page, result)
 
 
 def _tell_uniqueness(page: Builder, result: LyapunovSolution) -> None:
     """Write χ, and the determinant that says whether the solution is unique."""
-    plant, A = page.plant, page["A"]
+    plant = page.plant
     polynomial = plant.matrices.A.characteristic_polynomial(plant.variable)
-    page.define(
-        "chi",
-        A.pencil.apply("det"),
-        page.value(polynomial),
-        say="lyapunov_polynomial",
-        closing=False,
-    )
+    page.define("chi", "det(s I - A)", page.value(polynomial), say="lyapunov_polynomial", closing=False)
     found = result.answer["determinant"]
     if plant.is_discrete:
         reversed_polynomial = from_coefficients(polynomial.coefficients(plant.variable)[::-1], plant.variable)
         page.define("chi_r", page.value(reversed_polynomial), say="lyapunov_reversed", closing=False)
-    image = A.apply("chi_r_at") if plant.is_discrete else (-A).apply("chi_at")
-    shown = relation(image.apply("det"), determinant_form(page, found))
+    image = "det(chi_r_at(A))" if plant.is_discrete else "det(chi_at(-A))"
+    form = determinant_form(page, found)
     time = "discrete" if plant.is_discrete else "continuous"
     if found.is_zero:
-        page.conclude(f"lyapunov_singular_{time}", determinant=relation(image.apply("det"), 0))
+        page.conclude(f"lyapunov_singular_{time}", determinant=page.line(f"{image} = 0"))
         return
     factors = vanishing_factors([found], plant.symbols.signs)
     if factors:
-        page.conclude(f"lyapunov_regular_if_{time}", determinant=shown)
+        page.conclude(f"lyapunov_regular_if_{time}", determinant=page.line(f"{image} = {{form}}", form=form))
         page.assume("lyapunov_provided", *factors)
     else:
-        page.conclude(
-            f"lyapunov_regular_{time}", determinant=relation(image.apply("det"), determinant_form(page, found), "!=", 0)
-        )
+        page.conclude(f"lyapunov_regular_{time}", determinant=page.line(f"{image} = {{form}} != 0", form=form))
 
 
-def _tell_entries(page: Builder) -> None:
+def _tell_entries(page: Builder, result: LyapunovSolution) -> None:
     """Write the left side in the entries of P, for plants of few states."""
     order = page.plant.order
     unknown = [f"p{i + 1}{j + 1}" for i in range(order) for j in range(i, order)]
@@ -355,18 +313,16 @@ def _tell_entries(page: Builder) -> None:
         *page.plant.field.names,
     }:
         return
-    P = page.value(symmetric(Matrix.column([Scalar.symbol(name) for name in unknown])))
-    left = _moved(page["A"], P, discrete=page.plant.is_discrete)
-    page.equal(relation(left, left.as_value), say="lyapunov_written_out")
+    P = symmetric(Matrix.column([Scalar.symbol(name) for name in unknown]))
+    page.equal(page.line(f"{result.left.replace('P', '{P}')} = #", P=P), say="lyapunov_written_out")
 
 
 def _tell_refusal(page: Builder, result: LyapunovSolution) -> None:
     """Write the X with tr QX ≠ 0 that shows that there is no solution."""
-    X, A = page.set("X_l", result.answer["X"]), page["A"]
-    moved = A @ X @ A.T - X if page.plant.is_discrete else A @ X + X @ A.T
-    page.equal(relation(X, X.as_value), relation(moved, Matrix.zeros(*X.value.shape)), say="lyapunov_obstacle")
-    found, time = trace(result.weight, result.answer["X"]), "discrete" if page.plant.is_discrete else "continuous"
-    page.conclude(f"lyapunov_impossible_{time}", trace=page.value(found))
+    page.set("X_l", result.answer["X"])
+    page.equal("X_l = #", page.line(f"{result.transposed} = 0", X="X_l"), say="lyapunov_obstacle")
+    time = "discrete" if page.plant.is_discrete else "continuous"
+    page.conclude(f"lyapunov_impossible_{time}", trace=page.value(trace(result.weight, result.answer["X"])))
 
 
 def _tell_definiteness(page: Builder, result: LyapunovSolution) -> None:

@@ -10,21 +10,20 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Matrix, Scalar
-from symobs.formula.tree import Environment, Literal
-from symobs.formula.tree.term import Term, block
+from symobs.formula.tree import Environment
+from symobs.formula.tree.written import stacked
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
-from symobs.proof.certificate.claims import Claim
-from symobs.proof.derivation.builder import Builder, relation
 from symobs.tasks.analysis.modes.modes import TESTS
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.strata.strata import carried
-from symobs.tasks.result import Case, Result, choose, equality, method, task
+from symobs.tasks.result import Case, Result, choose, holds, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from symobs.proof.certificate.claims import Certificate
+    from symobs.proof.certificate.claims import Certificate, Claim
+    from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Name, Sign
     from symobs.tasks.analysis.rank.observability import RankResult
@@ -56,17 +55,20 @@ class Dual(Result):
         values |= {"C": m.C, "B_dual": answer["B"]} if m.has_output else {}
         values |= {"D": m.D, "D_dual": answer["D"]} if m.has_input and m.has_output else {}
         e = Environment(variable=self.plant.variable, values=values)
-        image = e["A"].T if self.sign > 0 else -e["A"].T
-        yield equality(e["A_dual"], image, e)
+        yield holds(e, f"A_dual = {self.image}")
         for left, right in (("B_dual", "C"), ("C_dual", "B"), ("D_dual", "D")):
             if left in values:
-                yield equality(e[left], e[right].T, e)
+                yield holds(e, f"{left} = {right}.T")
         for kind, test in self.tests.items():
             inner = Environment(variable=e.variable, values={"M": test.answer["matrix"], "N": self._dual_matrix(kind)})
-            signs = self._signs(self.plant.outputs if kind == "observability" else self.plant.inputs)
-            yield equality(inner["N"], inner["M"].T @ Term(Literal(signs), inner), inner, f"dual of {kind}")
+            yield holds(inner, "N = M.T {signs}", f"dual of {kind}", signs=self._signs(kind))
             ranks = answer[f"{kind}_rank"], answer[f"dual_{_OTHER[kind]}_rank"], test.answer["rank"]
-            yield Claim(relation(*ranks), inner, f"both ranks of {kind}")
+            yield holds(inner, "{} = {} = {}".format(*ranks), f"both ranks of {kind}")
+
+    @property
+    def image(self) -> str:
+        """What the dual has in place of A."""
+        return "A.T" if self.sign > 0 else "-A.T"
 
     def _dual_matrix(self, kind: str) -> Matrix:
         """Return [B, AB, …] of the dual, or the transpose of its [C; CA; …]."""
@@ -77,8 +79,9 @@ class Dual(Result):
             columns.append(A @ columns[-1])
         return Matrix.block([columns])
 
-    def _signs(self, width: int) -> Matrix:
-        """Return diag(I, ±I, I, …), the blocks of the given width."""
+    def _signs(self, kind: str) -> Matrix:
+        """Return diag(I, ±I, I, …), the blocks as wide as there are outputs, or inputs."""
+        width = self.plant.outputs if kind == "observability" else self.plant.inputs
         total = width * self.plant.order
         return Matrix.of([[self.sign ** (i // width) * int(i == j) for j in range(total)] for i in range(total)], total)
 
@@ -132,44 +135,30 @@ class Dual(Result):
         given(page)
         m = self.plant.matrices
         with page.section("dual"):
-            image = page["A"].T if self.sign > 0 else -page["A"].T
-            say = "dual_positive" if self.sign > 0 else "dual_negative"
-            page.define("A_dual", image, say=say, answer=True)
-            if m.has_output:
-                page.define("B_dual", page["C"].T, answer=True)
-            if m.has_input:
-                page.define("C_dual", page["B"].T, answer=True)
-            if m.has_feedthrough:
-                page.define("D_dual", page["D"].T, answer=True)
+            page.define("A_dual", self.image, say="dual_positive" if self.sign > 0 else "dual_negative", answer=True)
+            for name, own in (("B_dual", "C"), ("C_dual", "B"), ("D_dual", "D")):
+                if {"B": m.has_input, "C": m.has_output, "D": m.has_feedthrough}[own]:
+                    page.define(name, f"{own}.T", answer=True)
             for kind in self.tests:
                 self._compare(page, kind)
 
     def _compare(self, page: Builder, kind: str) -> None:
         """Write the test matrices of plant and dual, one the transpose of the other up to signs, and their ranks."""
-        A, dual, n = page["A"], page["A_dual"], range(1, self.plant.order)
-        if kind == "observability":
-            own, other, names = [page["C"]], [page["B_dual"]], ("O", "Ctr_dual")
-            own += [page["C"] @ A**k for k in n]
-            other += [dual**k @ page["B_dual"] for k in n]
-            first, second = block([[row] for row in own]), block([other])
+        is_observing, order = kind == "observability", self.plant.order
+        (own, row), (other, dual) = (
+            (("O", "C"), ("Ctr_dual", "B_dual")) if is_observing else (("Ctr", "B"), ("O_dual", "C_dual"))
+        )
+        page.define(own, stacked(row, "A", order, across=not is_observing), say=f"plant_{kind}")
+        page.define(other, stacked(dual, "A_dual", order, across=is_observing), say=f"dual_{_OTHER[kind]}")
+        if self.sign > 0 or order == 1:
+            page.equal(f"{other} = {own}.T", say="dual_same")
         else:
-            own, other, names = [page["B"]], [page["C_dual"]], ("Ctr", "O_dual")
-            own += [A**k @ page["B"] for k in n]
-            other += [page["C_dual"] @ dual**k for k in n]
-            first, second = block([own]), block([[row] for row in other])
-        page.define(names[0], first, say=f"plant_{kind}")
-        page.define(names[1], second, say=f"dual_{_OTHER[kind]}")
-        width = self.plant.outputs if kind == "observability" else self.plant.inputs
-        signs = page.value(self._signs(width))
-        left, right = page[names[1]], page[names[0]].T
-        if self.sign > 0 or self.plant.order == 1:
-            page.equal(relation(left, right), say="dual_same")
-        else:
-            page.equal(relation(left, right @ signs if kind == "observability" else signs @ right), say="dual_signs")
+            turned = f"{own}.T {{signs}}" if is_observing else f"{{signs}} {own}.T"
+            page.equal(page.line(f"{other} = {turned}", signs=self._signs(kind)), say="dual_signs")
         if self.plant.equations and self.tests[kind].existence:
             page.assume("dual_provided", *self.tests[kind].existence)
-        ranks = relation(left.apply("rank"), page[names[0]].apply("rank"), self.answer[f"{kind}_rank"])
-        page.conclude("dual_ranks_observing" if kind == "observability" else "dual_ranks_controlling", ranks=ranks)
+        ranks = page.line(f"rank({other}) = rank({own}) = {self.answer[f'{kind}_rank']}")
+        page.conclude("dual_ranks_observing" if is_observing else "dual_ranks_controlling", ranks=ranks)
 
 
 def solve(plant: StateSpace, sign: int, method_name: str) -> Dual:

@@ -7,8 +7,8 @@ elsewhere for the plant restricted to the stratum, whose claims hold modulo the 
 from __future__ import annotations
 
 import math
-from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias
 
 from symobs.exact import (
     EIGENVALUE,
@@ -19,6 +19,7 @@ from symobs.exact import (
     apart_from_zero,
     echelon,
     independent_rows,
+    modulo,
     primitive,
 )
 from symobs.exact.core.generators import NotWritten, letters_outside
@@ -27,7 +28,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, Undecided
 from symobs.proof.certificate.claims import Claim, verify
 from symobs.proof.derivation.builder import relation
-from symobs.system.conditions import Condition, never_zero, vanishing_factors
+from symobs.system.conditions import Condition, joined, never_zero, nonzero, vanishing_factors
 from symobs.system.reading import is_identity
 from symobs.tasks.analysis.strata.loci import Locus, Region, distance_from, loci, maximal
 from symobs.tasks.analysis.strata.rank_stratification import (
@@ -40,14 +41,13 @@ from symobs.tasks.analysis.strata.rank_stratification import (
     node_of,
     with_restriction,
 )
-from symobs.tasks.result import Case, equality
+from symobs.tasks.result import Case, Result, equality
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from symobs.system import StateSpace
     from symobs.tasks.analysis.strata.rank_stratification import Tree
-    from symobs.tasks.result import Result
 
     Solve: TypeAlias = Callable[[StateSpace, dict[str, Scalar]], Result | None]
 
@@ -373,6 +373,43 @@ def found_once(kind: Any, plant: StateSpace, *asked: Any) -> Result:
     return found
 
 
+class PutAgain(Result):
+    """A result whose cases are the same question with the data on a stratum: `of(plant, *inputs, method)`."""
+
+    #: The data beside the plant by the names of their fields, in the order of `of`.
+    inputs: ClassVar[tuple[str, ...]] = ()
+
+    @property
+    def further_data(self) -> tuple[Matrix, ...]:
+        """The matrices that are given beside the plant."""
+        return tuple(getattr(self, name) for name in self.inputs)
+
+    @property
+    def obstacle(self) -> Scalar | None:
+        """What would vanish if there were an answer; None where there is one."""
+        return None
+
+    @cached_property
+    def holds_where(self) -> tuple[Condition, ...]:
+        """The domain, the conditions of existence, and the denominators of the answer."""
+        found = nonzero("existence", vanishing_factors(self.existence, self.plant.symbols.signs))
+        return joined((*self.domain, *found), super().holds_where)
+
+    @cached_property
+    def case_tree(self) -> tuple[Case, ...]:
+        """The question again where a condition of the answer fails, or where there is an answer after all."""
+        if self.obstacle is None:
+            where = places(self.plant, [c.expression for c in self.holds_where if c.kind != "domain"])
+        else:
+            equation = self.obstacle.numerator
+            where = () if equation.is_constant else common_places(self.plant, [equation])
+        return solved(self.plant, where, self._on)
+
+    def _on(self, there: StateSpace, values: dict[str, Scalar]) -> Result:
+        data = (modulo(part.substitute(values), there.ideal) for part in self.further_data)
+        return found_once(type(self), there, *data, self.method)
+
+
 def _case(place: Place, plant: StateSpace, find: Callable[[], Result | None]) -> Iterator[Case]:
     """Yield the case of a stratum with its result; none where the plant is undefined or the question is void."""
     when, values, _ = place
@@ -382,7 +419,7 @@ def _case(place: Place, plant: StateSpace, find: Callable[[], Result | None]) ->
         return
     except (NotWritten, Undecided):
         yield Case(when, values or {}, None)
-    except (CertificateRejected, TooLarge):
+    except CertificateRejected:
         if values is not None and not plant.equations:
             raise
         yield Case(when, {}, None)

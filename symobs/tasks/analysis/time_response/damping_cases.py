@@ -31,7 +31,7 @@ from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.system.conditions import Condition, opposite, sign_of, vanishing_factors
 from symobs.tasks.analysis.strata.loci import Locus
 from symobs.tasks.analysis.strata.strata import strata
-from symobs.tasks.result import Case, Result
+from symobs.tasks.result import Case, Result, holds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -308,6 +308,13 @@ def with_signs(plant: StateSpace, taken: Signs, solve: Callable[[Callable[[Scala
                 raise
             low = sign_of(open_branch.discriminant, plant.symbols.signs) == "nonnegative"
             chosen[open_branch.discriminant] = "positive" if low else "negative"
+
+
+def exponential_claims(e: Environment) -> Iterator[Claim]:
+    """Yield the differential equation of the matrix exponential and its start, which have one solution."""
+    Phi = e["exp_At"]
+    yield holds(e, "{rate} = A exp_At", "d/dt exp(A*t) = A*exp(A*t)", rate=rate_of(Phi))
+    yield holds(e, "{start} = I", "exp(A*0) = I", start=Phi.at("t", 0))
 
 
 def from_zero(names: Iterable[str], e: Environment) -> Iterator[Claim]:

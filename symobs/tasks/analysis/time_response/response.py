@@ -17,15 +17,20 @@ from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.matrix_power import PowerOf, matrix_power
 from symobs.exact.time_functions.quasipolynomial import Quasipolynomial, Table, matrix_at, product, table_of
 from symobs.formula.figures import PlottedResponse, TimeResponse
-from symobs.formula.tree import Literal
-from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.formula.tree.term import Term, block
+from symobs.formula.tree.written import written
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ShapeMismatch
-from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.system.specification import parse_in_steps, read_gain
 from symobs.tasks.analysis.page_parts import given
-from symobs.tasks.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, time_environment
+from symobs.tasks.analysis.time_response.damping_cases import (
+    DampingCases,
+    Signs,
+    exponential_claims,
+    rate_of,
+    time_environment,
+)
 from symobs.tasks.analysis.time_response.horizons import read_functions
 from symobs.tasks.analysis.time_response.initial_state import MOST_SAMPLES, motion_from_rest
 from symobs.tasks.analysis.time_response.matrix_exponential import (
@@ -45,7 +50,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_power,
     tell_question,
 )
-from symobs.tasks.result import Result, choose, method, task
+from symobs.tasks.result import Result, choose, holds, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -53,6 +58,7 @@ if TYPE_CHECKING:
     from symobs.exact.time_functions.matrix_exponential import Exponential
     from symobs.formula.figures import Interval
     from symobs.formula.tree import Environment, Relation
+    from symobs.proof.certificate.claims import Claim
     from symobs.proof.derivation.builder import Builder, Slot
     from symobs.system import StateSpace
     from symobs.system.specification import MatrixText, Name, TimeFunctions
@@ -290,6 +296,9 @@ class Response(DampingCases):
     answered_by = ("state",)
     functions_of_time = {"x": "state", "x(t)": "state", "y": "output", "y(t)": "output"}
     letters = {"state": "x_t", "output": "y_t"}
+    #: The letter of time, and how certificates write the equation of motion.
+    clock: ClassVar[str] = "t"
+    law: ClassVar[str] = "x' = A*x + B*u"
     main: ClassVar[str] = "state"
     asked_for: ClassVar[tuple[str, ...]] = ("initial", "input", "impulse")
 
@@ -336,26 +345,44 @@ class Response(DampingCases):
         yield from super().claims()
         if self.answer["state"] is None:
             return
-        m, names = self.plant.matrices, {"x_t": "state", "y_t": "output", "u_t": "input", "x_0": "start"}
+        m, k, answer = self.plant.matrices, self.clock, self.answer
+        names = {f"x_{k}": "state", f"y_{k}": "output", f"u_{k}": "input", "x_0": "start"}
         names |= {"exp_At": "exponential", "x_f": "forced"}
         values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
-        values |= {name: self.answer[key] for name, key in names.items() if self.answer.get(key) is not None}
+        values |= {name: answer[key] for name, key in names.items() if answer.get(key) is not None}
         e = time_environment(self.plant, values)
-        x, Phi = letter("x_t", e), letter("exp_At", e)
-        yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e, "d/dt exp(A*t) = A*exp(A*t)")
-        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e, "exp(A*0) = I")
+        if "exp_At" in values:
+            yield from exponential_claims(e)
         if "x_f" in values:
-            free = Phi @ letter("x_0", e)
-            yield Claim(relation(x, free + letter("x_f", e)), e, "x = exp(A*t)*x0 + x_f")
-        yield Claim(relation(rate_of(x), _moved(self, e)), e, "x' = A*x + B*u")
-        yield Claim(relation(x.at("t", 0), letter("x_0", e)), e, "x(0) = x0")
-        yield Claim(
-            relation(letter("x_0", e), _begun(self, e, leave_out_rest=False)),
-            e,
-            "x0 is the initial state and what the impulse adds",
-        )
-        if "y_t" in values:
-            yield Claim(relation(letter("y_t", e), _seen(self, e)), e, "y = C*x + D*u")
+            yield holds(e, "x_t = exp_At x_0 + x_f", "x = exp(A*t)*x0 + x_f")
+        yield holds(e, f"{{rate}} = {self.moved}", self.law, rate=self.rate(e))
+        yield holds(e, "{begun} = x_0", "x(0) = x0", begun=e[f"x_{k}"].at(k, 0))
+        if k == "t":
+            begun = _begun(self, e, leave_out_rest=False)
+            yield holds(e, "x_0 = {begun}", "x0 is the initial state and what the impulse adds", begun=begun)
+        if answer["output"] is not None:
+            yield holds(e, f"y_{k} = {self.seen}", "y = C*x + D*u")
+
+    def rate(self, e: Environment) -> Term:
+        """Return x′."""
+        return rate_of(e["x_t"])
+
+    @property
+    def moved(self) -> str:
+        """A x + B u."""
+        return f"A x_{self.clock}" + (f" + B u_{self.clock}" if self.answer["input"] is not None else "")
+
+    @property
+    def seen(self) -> str:
+        """C x + D u."""
+        through = self.answer["input"] is not None and self.plant.matrices.has_feedthrough
+        return f"C x_{self.clock}" + (f" + D u_{self.clock}" if through else "")
+
+    def tell_motion(self, page: Builder) -> str:
+        """Write the matrix exponential; return its letter."""
+        taken = {**self.answer["taken"], **self.answer["chosen"]}
+        tell_exponential(page, closed_form(self.plant, taken, sums=has_sums(self.plant))[0], self.answer["exponential"])
+        return "exp_At"
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -421,22 +448,9 @@ def _begun(result: Response, e: Environment, *, leave_out_rest: bool = True) -> 
     """Return the initial state plus B v, what an impulse of strength v adds to it."""
     before, v = result.answer["initial"], result.answer["impulse"]
     if v is None:
-        return Term(Literal(before), e)
-    added = letter("B", e) if v == Matrix.identity(1) else letter("B", e) @ Term(Literal(v), e)
-    return added if leave_out_rest and before.is_zero else Term(Literal(before), e) + added
-
-
-def _moved(result: Response, e: Environment) -> Term:
-    """Return A x + B u."""
-    free = letter("A", e) @ letter("x_t", e)
-    return free if result.answer["input"] is None else free + letter("B", e) @ letter("u_t", e)
-
-
-def _seen(result: Response, e: Environment) -> Term:
-    """Return C x + D u."""
-    seen = letter("C", e) @ letter("x_t", e)
-    through = result.answer["input"] is not None and result.plant.matrices.has_feedthrough
-    return seen + letter("D", e) @ letter("u_t", e) if through else seen
+        return written("{before}", e, before=before)
+    added = written("B" if v == Matrix.identity(1) else "B {v}", e, v=v)
+    return added if leave_out_rest and before.is_zero else written("{before} + {added}", e, before=before, added=added)
 
 
 def _entry(matrix: Matrix) -> Matrix | Scalar:
@@ -446,18 +460,19 @@ def _entry(matrix: Matrix) -> Matrix | Scalar:
 
 def _write_branch(page: Builder, result: Response) -> None:
     """Write one branch."""
-    answer = result.answer
+    answer, k, in_steps = result.answer, result.clock, result.clock == "k"
     if answer.get("question") is not None:
-        tell_question(page, answer["factor"])
+        (tell_open_power if in_steps else tell_question)(page, answer["factor"])
         page.remark("response_not_given")
         return
-    found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]}, sums=has_sums(result.plant))
-    tell_exponential(page, found, answer["exponential"])
+    motion = result.tell_motion(page)
     begins, has_impulse, u = answer["start"], answer["impulse"] is not None, None
     from_rest = begins.is_zero and not has_impulse
     x_0 = page.value(begins) if from_rest else page.set("x_0", begins)
     if answer["input"] is not None:
-        u = relation(page.set("u_t", answer["input"]), _entry(answer["input"]))
+        u = relation(page.set(f"u_{k}", answer["input"]), _entry(answer["input"]))
+        if in_steps:
+            tell_impulses(page, answer["input"])
     if has_impulse:
         chain = [_begun(result, page.environment), _entry(begins)]
         page.equal(relation(x_0, *chain), say="response_impulse")
@@ -469,25 +484,28 @@ def _write_branch(page: Builder, result: Response) -> None:
         page.equal(u, say="response_from_rest")
     else:
         page.equal(relation(x_0, _entry(begins)), u, say="response_driven")
-    members, say = [page["exp_At"] @ x_0], "response_state_free"
-    if from_rest:
-        members, say = [], "output_forced"
-    elif u is not None:
-        members, say = [page["exp_At"] @ x_0 + _forced(page, answer["forced"])], "response_state"
-    x = page.define("x_t", *members, answer["state"], say=say, answer=True, closing=False)
-    e = page.environment
+    members, say = [] if from_rest and not in_steps else [page(f"{motion} {{x_0}}", x_0=x_0)] if motion else [], ""
+    if u is None:
+        say = "response_state_free" if members else "output_forced"
+    elif in_steps:
+        say = "steps_state"
+    elif from_rest:
+        say = "output_forced"
+    else:
+        members, say = [members[0] + _forced(page, answer["forced"])], "response_state"
+    x = page.define(f"x_{k}", *members, answer["state"], say=say, answer=True, closing=False)
     if answer["output"] is not None:
-        page.define(
-            "y_t", _seen(result, e), _entry(answer["output"]), say="response_output", answer=True, closing=False
-        )
-    page.verified("response_checked", relation(rate_of(x), _moved(result, e)), start=relation(x.at("t", 0), x_0))
+        shown = result.seen, _entry(answer["output"])
+        page.define(f"y_{k}", *shown, say="response_output", answer=True, closing=False)
+    moved = page.line(f"{{rate}} = {result.moved}", rate=result.rate(page.environment))
+    page.verified("steps_checked" if in_steps else "response_checked", moved, start=relation(x.at(k, 0), x_0))
 
 
 def _forced(page: Builder, value: Matrix) -> Term:
     """Define the motion from rest, which is held to its differential equation without words."""
     x_f = page.define("x_f", value, say="output_forced", closing=False)
-    rate = relation(rate_of(x_f), page["A"] @ x_f + page["B"] @ page["u_t"])
-    page.conclude_silently(rate, relation(x_f.at("t", 0), Matrix.zeros(*value.shape)))
+    rate = page.line("{rate} = A x_f + B u_t", rate=rate_of(x_f))
+    page.conclude_silently(rate, page.line("{start} = 0", start=x_f.at("t", 0)))
     return x_f
 
 
@@ -556,6 +574,8 @@ class ResponseInSteps(Response):
 
     functions_of_time = {"x": "state", "x(k)": "state", "y": "output", "y(k)": "output"}
     letters = {"state": "x_k", "output": "y_k"}
+    clock = "k"
+    law = "x(k + 1) = A*x(k) + B*u(k)"
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
@@ -578,31 +598,17 @@ class ResponseInSteps(Response):
             output = (m.C @ state if u is None else m.C @ state + m.D @ u).normal()
         return cls(plant, method_name, {**shared, "state": state, "output": output})
 
-    def claims(self) -> Iterator[Claim]:
-        """Yield the recursion, the start, and the output."""
-        yield from super(Response, self).claims()
-        if self.answer["state"] is None:
-            return
-        m, names = self.plant.matrices, {"x_k": "state", "y_k": "output", "u_k": "input", "x_0": "start"}
-        values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
-        values |= {name: self.answer[key] for name, key in names.items() if self.answer[key] is not None}
-        e = time_environment(self.plant, values)
-        x = letter("x_k", e)
-        yield Claim(relation(following(x), self.moved(e)), e, "x(k + 1) = A*x(k) + B*u(k)")
-        yield Claim(relation(x.at("k", 0), letter("x_0", e)), e, "x(0) = x0")
-        if "y_k" in values:
-            yield Claim(relation(letter("y_k", e), self.seen(e)), e, "y = C*x + D*u")
+    def rate(self, e: Environment) -> Term:
+        """Return x(k + 1)."""
+        return following(e["x_k"])
 
-    def moved(self, e: Environment) -> Term:
-        """Return A x + B u."""
-        free = letter("A", e) @ letter("x_k", e)
-        return free if self.answer["input"] is None else free + letter("B", e) @ letter("u_k", e)
-
-    def seen(self, e: Environment) -> Term:
-        """Return C x + D u."""
-        seen = letter("C", e) @ letter("x_k", e)
-        through = self.answer["input"] is not None and self.plant.matrices.has_feedthrough
-        return seen + letter("D", e) @ letter("u_k", e) if through else seen
+    def tell_motion(self, page: Builder) -> str:
+        """Write the powers of A where nothing else moves the plant."""
+        A = self.plant.matrices.A
+        if self.answer["input"] is not None:
+            return ""
+        tell_power(page, A, powers_of(A, page.plant.variable))
+        return "A_k"
 
     @property
     def is_drawn(self) -> bool:
@@ -615,7 +621,7 @@ class ResponseInSteps(Response):
         given(page)
         with page.section("response"):
             tell_polynomial(page)
-            self.write_branches(page, _write_steps)
+            self.write_branches(page, _write_branch)
 
 
 def _with_input(A: Matrix, B: Matrix, start: Matrix, u: Matrix, variable: str) -> tuple[Matrix, Matrix]:
@@ -651,34 +657,6 @@ def _input_polynomial(u: Matrix, variable: str) -> Scalar:
     for mode, count in counts.items():
         total = total * mode**count
     return total if counts else z
-
-
-def _write_steps(page: Builder, result: DampingCases) -> None:
-    """Write one branch."""
-    assert isinstance(result, ResponseInSteps)  # noqa: S101 - its own branches
-    answer, A = result.answer, result.plant.matrices.A
-    if answer.get("question") is not None:
-        tell_open_power(page, answer["factor"])
-        page.remark("response_not_given")
-        return
-    power = tell_power(page, A, powers_of(A, page.plant.variable)) if answer["input"] is None else None
-    begins, u = answer["start"], None
-    x_0 = page.value(begins) if begins.is_zero else page.set("x_0", begins)
-    if answer["input"] is not None:
-        u = relation(page.set("u_k", answer["input"]), _entry(answer["input"]))
-        tell_impulses(page, answer["input"])
-    if u is None:
-        page.equal(relation(x_0, _entry(begins)), say="response_free")
-    elif begins.is_zero:
-        page.equal(u, say="response_from_rest")
-    else:
-        page.equal(relation(x_0, _entry(begins)), u, say="response_driven")
-    members, say = ([], "steps_state") if power is None else ([power @ x_0], "response_state_free")
-    x = page.define("x_k", *members, answer["state"], say=say, answer=True, closing=False)
-    e = page.environment
-    if answer["output"] is not None:
-        page.define("y_k", result.seen(e), _entry(answer["output"]), say="response_output", answer=True, closing=False)
-    page.verified("steps_checked", relation(following(x), result.moved(e)), start=relation(x.at("k", 0), x_0))
 
 
 # What is given.

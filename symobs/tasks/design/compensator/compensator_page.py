@@ -9,6 +9,7 @@ from symobs.exact import Factored, Matrix, Root, Scalar, from_coefficients, rank
 from symobs.formula.phrases import PHRASES
 from symobs.formula.tree import Evaluated, HoldsExactlyWhere, Literal, Quotient, Roots
 from symobs.formula.tree.term import Term, block
+from symobs.formula.tree.written import stacked
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.proof.derivation.wording_check import modes_of_double
 from symobs.stability.criteria.stability import monic, no_stable_compensator, stability
@@ -85,9 +86,8 @@ def _with_distinct_poles(page: Builder, desired: DesiredPolynomial) -> Relation 
     gain = StateFeedbackDesign.of(plant, distinct, "ackermann").answer["K"]
     if gain is None:
         return None
-    pencil = page.s @ page.identity(plant.order) - page["A"] + page["B"] @ page.value(gain)
-    product = Factored(Scalar.of(1), tuple((factor, 1) for factor in factors))
-    return relation(pencil.apply("det"), page.term(formula_of_factored(product)))
+    product = formula_of_factored(Factored(Scalar.of(1), tuple((factor, 1) for factor in factors)))
+    return page.line("det(s I - A + B {gain}) = {product}", gain=gain, product=page.term(product))
 
 
 # Observer and state feedback in two columns, line by line: the same placement for (Aᵀ, Cᵀ) and for (A, B).
@@ -120,45 +120,35 @@ def write_side_by_side(page: Builder, design: CompensatorDesign) -> None:
 
 def _column(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
     """Write the test, the polynomial, the gain and its check for one of the pairs."""
-    A, order, value = _matrix(page, side), page.plant.order, design.answer[side.gain]
+    A, order, value = _matrix(side), page.plant.order, design.answer[side.gain]
     if side is OBSERVER:
-        page.define("O", block([[page["C"] @ page["A"] ** k if k else page["C"]] for k in range(order)]), silent=True)
-        test, gain, found = page["O"].T, page["L"].T, value.T
-        blocks = block([[A**k @ page["C"].T if k else page["C"].T for k in range(order)]])
-        page.conclude_silently(relation(test, blocks))
+        page.define("O", stacked("C", "A", order), silent=True)
+        test, gain, found, blocks = "Oᵀ", "Lᵀ", value.T, page[stacked("Cᵀ", "Aᵀ", order, across=True)]
+        page.conclude_silently(page.line("Oᵀ = {blocks}", blocks=blocks))
     else:
-        gain, found = page["K"], value
-        blocks = block([[A**k @ page["B"] if k else page["B"] for k in range(order)]])
+        test, gain, found, blocks = "Ctr", "K", value, page[stacked("B", "A", order, across=True)]
         page.define("Ctr", blocks, silent=True)
-        test = page["Ctr"]
-    page.equal(
-        relation(test, *([blocks] if order <= readability.COLUMN_ORDER else []), test.as_value), say=f"test_{side.kind}"
-    )
+    shown = "{blocks} = #" if order <= readability.COLUMN_ORDER else "#"
+    page.equal(page.line(f"{test} = {shown}{test}", blocks=blocks), say=f"test_{side.kind}")
     if square_test(page, side.matrix, design.test, side.test):
         page.conclude(f"any_{side.kind}")
     desired = name_coefficients(page, design, side)
     page.set(side.gain, value)
     last = page.value(Matrix.unit(order, order - 1).T)
-    page.equal(
-        relation(gain, last @ test.inverse @ A.apply(f"{side.phi}_at"), found),
-        say=f"gain_{side.kind}",
-        answer=side is FEEDBACK,
-    )
+    chain = page.line(f"{gain} = {{last}} {test}^-1 {side.phi}_at({A}) = {{found}}", last=last, found=found)
+    page.equal(chain, say=f"gain_{side.kind}", answer=side is FEEDBACK)
     grouped = [] if desired.is_expanded else [page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped())))]
     say_as_required(page, desired, _determinant(page, side), page.value(desired.polynomial), *grouped)
 
 
-def _matrix(page: Builder, side: PlacementProblem) -> Term:
+def _matrix(side: PlacementProblem) -> str:
     """Return Aᵀ on the left, A on the right."""
-    return page["A"].T if side is OBSERVER else page["A"]
+    return "Aᵀ" if side is OBSERVER else "A"
 
 
 def _determinant(page: Builder, side: PlacementProblem) -> Term:
     """Return det(sI − Aᵀ + CᵀLᵀ) on the left, det(sI − A + BK) on the right."""
-    if side is FEEDBACK:
-        return side.error_determinant(page)
-    moved = page["C"].T @ page["L"].T
-    return (page.s @ page.identity(page.plant.order) - page["A"].T + moved).apply("det")
+    return side.error_determinant(page) if side is FEEDBACK else page["det(s I - Aᵀ + Cᵀ Lᵀ)"]
 
 
 #: Up to this order positive coefficients make a polynomial stable in continuous time.
@@ -204,8 +194,7 @@ def write_compensator(page: Builder, design: CompensatorDesign) -> None:
         if not design.is_single:
             return_path_of_several(page, design)
         elif large:
-            own = (page.s @ page.identity(design.plant.order) - page["A_c"]).apply("det")
-            named_return_path(page, design, own)
+            named_return_path(page, design, page["det(pencil(A_c))"])
         else:
             return_path(page, design)
 
@@ -213,58 +202,44 @@ def write_compensator(page: Builder, design: CompensatorDesign) -> None:
 def _state_space(page: Builder, design: CompensatorDesign) -> None:
     """Write u = −K x̂ put into the observer: (4.23), (4.24)."""
     m = design.plant.matrices
-    A, B, C, K, L, x_hat = (page[name] for name in ("A", "B", "C", "K", "L", "x_hat"))
     model, innovation = model_and_innovation(page)
-    law = relation(page["u"], -K @ x_hat)
-    page.signal("u", -K @ x_hat, say="separation")
-    both: dict[str, Any] = {"law": law, "rate": relation(x_hat.derivative, model + L @ innovation)}
-    closed, shown = A - B @ K - L @ C, A.as_value - (B @ K).as_value - (L @ C).as_value
+    page.signal("u", page["(-K) x_hat"], say="separation")
+    rate = page.line("x_hat' = {model} + L {innovation}", model=model, innovation=innovation)
+    both: dict[str, Any] = {"law": page.line("u = (-K) x_hat"), "rate": rate}
+    closed, shown = "A - B K - L C", "#A - #(B K) - #(L C)"
     if m.has_feedthrough:
-        closed, shown = closed + L @ page["D"] @ K, shown + (L @ page["D"] @ K).as_value
-    own, is_written = closed @ x_hat + L @ page["y"], closed.value.size <= readability.MATRIX
-    small = page.plant.order == readability.PRODUCTS_ORDER and not m.has_feedthrough
-    shown = A.as_value - B.as_value @ K.as_value - L.as_value @ C.as_value if small else shown
+        closed, shown = f"{closed} + L D K", f"{shown} + #(L D K)"
+    elif page.plant.order == readability.PRODUCTS_ORDER:
+        shown = "#A - #B #K - #L #C"
     numbers = [shown] if page.plant.order <= readability.WRITTEN_OUT_ORDER else []
-    if not is_written:
-        page.equal(relation(x_hat.derivative, own), say="observer_closed", **both)
+    own = page.line(f"x_hat' = ({closed}) x_hat + L y")
+    if page[closed].value.size > readability.MATRIX:
+        page.equal(own, say="observer_closed", **both)
         page.define("A_c", closed, *numbers, say="compensator_matrix")
     else:
         page.define("A_c", closed, *numbers, say="observer_closed_matrix", **both)
-        written = page["A_c"].as_value @ x_hat + L.as_value @ page["y"]
-        page.conclude_silently(relation(x_hat.derivative, own))
-        page.equal(
-            relation(x_hat.derivative, page["A_c"] @ x_hat + L @ page["y"], written),
-            relation(page["u"], -K.as_value @ x_hat),
-            say="compensator_written",
-        )
+        page.conclude_silently(own)
+        page.equal("x_hat' = A_c x_hat + L y = #A_c x_hat + #L y", "u = (-#K) x_hat", say="compensator_written")
     draw_compensator(page)
 
 
 def _transfer_function(page: Builder, design: CompensatorDesign) -> None:
     """Write (4.25) in four stages: inverse, adjugate over determinant, adjugate times L, scalar; those that can be read."""
-    K, L, F = page["K"], page["L"], design.answer["F"]
-    order = design.plant.order
-    pencil = (page.s @ page.identity(order) - page["A_c"]).value
-    _, characteristic = design.own_transfer
+    F, L, K = design.answer["F"], page["L"].value, page["K"].value
+    pencil = page["pencil(A_c)"].value
     adjugate = pencil.adjugate()
-    driven = (adjugate @ L.value).normal()
-    one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
-    stages = [
-        (pencil, K.as_value @ page.value(pencil).inverse @ L.as_value),
-        (adjugate, one_over @ K.as_value @ page.value(adjugate) @ L.as_value),
-        (driven, one_over @ K.as_value @ page.value(driven)),
-    ]
-    written = [stage for matrix, stage in stages if is_narrow(matrix, K.value)]
-    whole = K @ (page.s @ page.identity(order) - page["A_c"]).inverse @ L
-    page.define("F", whole, *written, page.value(F), say="transfer_function_of_compensator", answer=True)
+    driven = (adjugate @ L).normal()
+    one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(design.own_transfer[1])))
+    stages = ((pencil, "#K {M}^-1 #L"), (adjugate, "{one_over} #K {M} #L"), (driven, "{one_over} #K {M}"))
+    written = [page(text, M=matrix, one_over=one_over) for matrix, text in stages if is_narrow(matrix, K)]
+    say = "transfer_function_of_compensator"
+    page.define("F", "K pencil(A_c)^-1 L", *written, page.value(F), say=say, answer=True)
     say_stability(page, design, "compensator", predicate("strictly_proper", page["F"]))
 
 
 def _transfer_matrix(page: Builder, design: CompensatorDesign) -> None:
     """Write (4.25) for several inputs or outputs: the resolvent, then the entries."""
-    K, L, F = page["K"], page["L"], design.answer["F"]
-    formula = K @ (page.s @ page.identity(design.plant.order) - page["A_c"]).inverse @ L
-    define_or_hold(page, "F", formula, F, "transfer_function_of_compensator")
+    define_or_hold(page, "F", page["K pencil(A_c)^-1 L"], design.answer["F"], "transfer_function_of_compensator")
     say_stability(page, design, "compensator", predicate("strictly_proper", page["F"]))
 
 
@@ -315,7 +290,7 @@ def _reason(page: Builder, design: OutputFeedback, word: str) -> dict[str, Slot]
     F, plant = design.answer["F"], page.plant
     if plant.is_discrete or plant.order > _DECIDED_BY_SIGNS or not isinstance(F, Scalar) or not page.defines("A_c"):
         return {}
-    own = (page.s @ page.identity(page["A_c"].value.shape[0]) - page["A_c"]).apply("det")
+    own = page["det(pencil(A_c))"]
     coefficients = own.scalar.coefficients(plant.variable)
     if own.scalar != monic(F.denominator, plant.variable) or not all(c.is_constant for c in coefficients):
         return {}
@@ -325,32 +300,29 @@ def _reason(page: Builder, design: OutputFeedback, word: str) -> dict[str, Slot]
 
 def _error_coordinates(page: Builder, design: CompensatorDesign, *, large: bool) -> None:
     """Write (4.26)-(4.29): u = −Kx + Ke, ẋ = (A − BK) x + BKe, block triangular."""
-    A, B, C, K, L = (page[name] for name in "ABCKL")
-    x, e, order = page["x"], page["e"], design.plant.order
-    control, rate = relation(page["u"], -K @ x + K @ e), relation(x.derivative, (A - B @ K) @ x + B @ K @ e)
-    zero = page.value(Matrix.zeros(order, order))
-    state = block([[x], [e]])
-    matrix = block([[A - B @ K, B @ K], [zero, A - L @ C]])
-    halves = [order, order]
+    order = design.plant.order
+    control, rate = page.line("u = (-K) x + K e"), page.line("x' = (A - B K) x + B K e")
+    halves, zero, one = [order, order], Matrix.zeros(order, order), page.identity(order)
+    matrix = page("[A - B K, B K; {zero}, A - L C]", zero=zero)
+    turn = page("[{one}, {zero}; {one}, -{one}]", zero=zero, one=one)
     numbers = [in_blocks(page, matrix.value, halves, halves)] if not large and is_narrow(matrix.value) else []
     page.define("A_cl", matrix, *numbers, say="closed_loop_matrix", closing=False, control=control, rate=rate)
-    page.equal(relation(state.derivative, page["A_cl"] @ state))
-    determinant = (page.s @ page.identity(2 * order) - page["A_cl"]).apply("det")
+    page.equal("[x; e]' = A_cl [x; e]")
+    determinant = page["det(pencil(A_cl))"]
     parts = FEEDBACK.error_determinant(page) @ OBSERVER.error_determinant(page)
     product = page.term(formula_of_factored(design.loop_polynomial))
     page.equal(relation(determinant, parts, product), say=f"polynomial_splits{of_given(design)}")
     caution_unstable_loop(page, design, determinant)
-    second = block([[A, -(B @ K)], [L @ C, A - B @ K - L @ C]])
-    states = block([[x], [page["x_hat"]]])
-    members = [states.derivative, second @ states]
+    second = page["[A, -(B K); L C, A - B K - L C]"]
+    numbers = []
     if not large and order <= readability.WRITTEN_OUT_ORDER and is_narrow(second.value):
-        members.append(in_blocks(page, second.value, halves, halves) @ states)
-    one = page.identity(order)
-    turn = block([[one, zero], [one, -one]])
+        numbers = [in_blocks(page, second.value, halves, halves) @ page["[x; x_hat]"]]
     page.conclude_silently(
-        relation(turn @ turn, page.identity(2 * order)), relation(turn @ second @ turn, page["A_cl"])
+        relation(turn @ turn, page.identity(2 * order)), page.line("{T} {M} {T} = A_cl", T=turn, M=second)
     )
-    page.equal(relation(*members), say="estimate_coordinates", turned=relation(state, turn @ states))
+    states = page("{M} [x; x_hat]", M=second)
+    turned = page.line("[x; e] = {T} [x; x_hat]", T=turn)
+    page.equal(relation(page["[x; x_hat]'"], states, *numbers), say="estimate_coordinates", turned=turned)
     plot_estimate(page, "e", page["A_cl"], Matrix.identity(order))
 
 
@@ -360,22 +332,21 @@ def return_path(page: Builder, design: OutputFeedback) -> None:
     form = design.single_loop
     denominator = Factored(Scalar.of(1), tuple((f, -power) for f, power in form.factors if power < 0)).value
     expanded = page.term(Quotient(Literal(form.value * denominator), Literal(denominator)))
-    definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
+    definition = page["P / (1 + P F)"]
     factors = page.term(formula_of_factored(form))
     few = form.value.size + design.answer["F"].size <= readability.LOOP
     if few:
         inserted = page.value(1) + plant_form @ page.value(design.answer["F"])
         below = factored_form(page, inserted.scalar.denominator)
         together = page.value(inserted.scalar.numerator) / below
-        page.equal(relation(page.value(1) + page["P"] @ page["F"], inserted, together), say="return_difference")
+        page.equal(relation(page["1 + P F"], inserted, together), say="return_difference")
     is_short = page.plant.order <= readability.LOOP_ORDER and is_narrow(Matrix.of([[denominator]]))
     members = [definition, expanded, factors] if is_short else [definition, factors]
     page.define("G_cl", *members, say="" if few else "return_path", answer=True, closing=False)
     draw_loop(page, plant_form, page.value(design.answer["F"]))
     _say_poles(page, design, form.value)
     unity = page.term(formula_of_factored(design.unity_loop))
-    around = page["P"] @ page["F"] / (page.value(1) + page["P"] @ page["F"])
-    page.define("G_r", around, unity, say="unity_feedback", closing=False)
+    page.define("G_r", "(P F) / (1 + P F)", unity, say="unity_feedback", closing=False)
     draw_unity_loop(page, plant_form, page.value(design.answer["F"]))
 
 
@@ -429,12 +400,10 @@ def _has_short_roots(factor: Scalar, variable: str) -> bool:
 def return_path_of_several(page: Builder, design: OutputFeedback) -> None:
     """Write (I + PF)⁻¹ P for several inputs or outputs."""
     plant = design.plant
-    response = page["C"] @ (page.s @ page.identity(plant.order) - page["A"]).inverse @ page["B"]
-    if plant.matrices.has_feedthrough:
-        response = response + page["D"]
+    response = page["C pencil(A)^-1 B" + (" + D" if plant.matrices.has_feedthrough else "")]
     P = Matrix.of([[design.plant_function]]) if isinstance(design.plant_function, Scalar) else design.plant_function
     define_or_hold(page, "P", response, P, "plant_transfer")
-    formula = (page.identity(plant.outputs) + page["P"] @ page["F"]).inverse @ page["P"]
+    formula = page("({one} + P F)^-1 P", one=page.identity(plant.outputs))
     entries = [[page.term(formula_of_factored(entry)) for entry in row] for row in design.loop_of_several]
     loop = Matrix.of([[entry.value for entry in row] for row in design.loop_of_several])
     shown = [block(entries)] if loop.size <= readability.MATRIX else []
@@ -451,10 +420,8 @@ def _plant(page: Builder, design: OutputFeedback) -> Term:
     form = factored_form(page, numerator / characteristic)
     if not page.defines("P"):
         page.define("P", form, say="plant_transfer", closing=False)
-        response = page["C"] @ (page.s @ page.identity(plant.order) - page["A"]).inverse @ page["B"]
-        if plant.matrices.has_feedthrough:
-            response = response + page["D"]
-        page.conclude_silently(relation(page["P"], response))
+        D = " + D" if plant.matrices.has_feedthrough else ""
+        page.conclude_silently(page.line(f"P = C pencil(A)^-1 B{D}"))
     if not plant.is_discrete and no_stable_compensator(page["P"].value, plant.variable, plant.symbols.signs):
         page.conclude("no_stable_compensator", predicate("no_stable_compensator", page["P"]))
     return form
@@ -462,13 +429,14 @@ def _plant(page: Builder, design: OutputFeedback) -> Term:
 
 def _named_transfer_function(page: Builder, design: CompensatorDesign) -> None:
     """Write F(s) with letters for its coefficients, which are written out below it."""
-    K, L, variable = page["K"], page["L"], design.plant.variable
-    resolvent = (page.s @ page.identity(design.plant.order) - page["A_c"]).inverse
-    numerator, denominator = transfer(page["A_c"].value, L.value, K.value, Scalar.of(0), variable)
+    variable = design.plant.variable
+    A_c, L, K = (page[name].value for name in ("A_c", "L", "K"))
+    numerator, denominator = transfer(A_c, L, K, Scalar.of(0), variable)
     names = Namer(page)
     above = names.polynomial("n", numerator.coefficients(variable), variable)
     below = names.polynomial("d", denominator.coefficients(variable)[1:], variable, monic=True)
-    page.define("F", K @ resolvent @ L, above / below, say="transfer_function_of_compensator", answer=True)
+    say = "transfer_function_of_compensator"
+    page.define("F", "K pencil(A_c)^-1 L", above / below, say=say, answer=True)
     names.show()
     page.conclude_silently(relation(page["F"], design.answer["F"]))
     page.conclude("compensator_proper", predicate("strictly_proper", page["F"]))
@@ -504,10 +472,9 @@ def named_return_path(page: Builder, design: OutputFeedback, own: Term) -> None:
     """Write P/(1 + PF) over the product of the two polynomials, `own` being the denominator of F."""
     _plant(page, design)
     numerator, _ = design.plant_transfer
-    definition = page["P"] / (page.value(1) + page["P"] @ page["F"])
-    above, below = (page.value(part) for part in (numerator.numerator, numerator.denominator))
-    product = above @ own / (below @ page["phi_c"] @ page["phi_o"])
-    page.define("G_cl", definition, product, say="return_path", answer=True, closing=False)
+    above, below = numerator.numerator, numerator.denominator
+    product = page("({above} {own}) / ({below} phi_c phi_o)", above=above, own=own, below=below)
+    page.define("G_cl", "P / (1 + P F)", product, say="return_path", answer=True, closing=False)
     page.conclude(f"loop_polynomial{of_given(design)}")
     draw_loop(page, page["P"], page["F"])
 
@@ -535,14 +502,10 @@ def caution_law(page: Builder, loop: OutputFeedback) -> None:
         return
     if stability(chi, plant.variable, {}, discrete=plant.is_discrete).verdict != "no":
         return
-    if minimal:
-        matrix = page["F_z"] - page["G_z"] @ page["K_2"]
-    else:
-        A, B, C, K, L = (page[name] for name in "ABCKL")
-        matrix = A - B @ K - L @ C
-        matrix = matrix + L @ page["D"] @ K if plant.matrices.has_feedthrough else matrix
+    own_law = "F_z - G_z K_2" if minimal else "A - B K - L C"
+    own_law += " + L D K" if plant.matrices.has_feedthrough else ""
     page.set("A_c", own)
-    determinant = (page.s @ page.identity(own.shape[0]) - page["A_c"]).apply("det")
+    determinant = page["det(pencil(A_c))"]
     time = "discrete" if plant.is_discrete else "continuous"
     unstable = predicate("unstable", determinant)
-    page.caution(f"law_unstable_{time}", unstable, matrix=relation(page["A_c"], matrix, page["A_c"].as_value))
+    page.caution(f"law_unstable_{time}", unstable, matrix=page.line(f"A_c = {own_law} = #A_c"))

@@ -265,7 +265,7 @@ class OptimalGain(Result):
             determinant = Matrix.block([[regulator.B, regulator.A @ regulator.B][: plant.order]]).determinant()
             beside += [] if determinant.is_zero else [determinant]
         known = [apart_from_zero(value) for value in beside]
-        found = [value for value in found if not never_together_zero([value.numerator], known, signs)]
+        found = [value for value in found if not _never_beside(value.numerator, known, signs)]
         return tuple(plant.simplified(value) for value in (*found, *beside))
 
     @property
@@ -380,6 +380,14 @@ def is_numeric(regulator: Regulator) -> bool:
 
 
 # -- what is asked of the weights --------------------------------------------------------------------------------------
+
+
+def _never_beside(value: Scalar, known: Iterable[Scalar], signs: Mapping[str, str]) -> bool:
+    """Return whether it is seen that a value vanishes nowhere where relations hold."""
+    try:
+        return never_together_zero([value], known, signs)
+    except TooLarge:
+        return False
 
 
 def _is_definite(matrix: Matrix, signs: Mapping[str, str]) -> bool:

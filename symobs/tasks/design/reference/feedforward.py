@@ -12,13 +12,13 @@ from symobs.formula.tree import Environment
 from symobs.formula.tree.term import Term, block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
-from symobs.proof.certificate.claims import Certificate, Claim
+from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation import CaseStep, Conclude
 from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.system.conditions import joined, nonzero, vanishing_factors
 from symobs.tasks.analysis.page_parts import factored_form, formula_of_factored
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
-from symobs.tasks.analysis.strata.strata import common_places, places, solved
+from symobs.tasks.analysis.strata.strata import common_places, places
 from symobs.tasks.design import page_parts as readability
 from symobs.tasks.design.compensator.compensator import KnownState, observer_based, observer_order, of_known_state
 from symobs.tasks.design.compensator.compensator_page import caution_law
@@ -28,9 +28,10 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
     partitioned_gain,
     write_both_gains,
 )
+from symobs.tasks.design.compensator.of_loop import OfLoop
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, letters_of
 from symobs.tasks.design.page_parts import draw_feedforward, draw_state_feedforward
-from symobs.tasks.result import Case, Result, choose, equality, method, page_of, poles_of, task
+from symobs.tasks.result import Result, choose, equality, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -40,11 +41,11 @@ if TYPE_CHECKING:
     from symobs.system.specification import GainText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.strata.strata import Place
     from symobs.tasks.design.compensator.output_feedback import OutputFeedback
-    from symobs.tasks.design.gain.gain_design import GainDesign
+    from symobs.tasks.result import Case
 
 
 @dataclass
-class FeedforwardDesign(Result):
+class FeedforwardDesign(OfLoop):
     """F with T = (C − DK)(sI − A + BK)⁻¹BF + DF and T(0) = I (T(1) = I in discrete time), or why there is none.
 
     `loop` is the state feedback, or the compensator, whose gains are used, with its own claims.  Where there is no F, `w` is
@@ -96,23 +97,6 @@ class FeedforwardDesign(Result):
         single, T = value.shape == (1, 1), response(self.loop, value).function(self.plant.variable)
         answer = {"F": value[0, 0] if single else value, "transfer_function": T[0, 0] if single else T}
         return replace(self, answer={**self.answer, **answer})
-
-    def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
-        """Return the design whose loop has other gains."""
-        return self.of(self.loop.with_gains(gains), self.method)
-
-    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
-        """Return the design whose loop has given gains."""
-        return self.of(self.loop.following_from(gains), self.method)
-
-    def design_of(self, gain: str) -> GainDesign:
-        """Return the design of one half of the loop."""
-        return self.loop.design_of(gain)
-
-    @property
-    def has_reduced_observer(self) -> bool:
-        """The loop's estimator may be one."""
-        return self.loop.has_reduced_observer
 
     def claims(self) -> Iterator[Claim]:
         """Yield what v does to y, that y = v at rest, and that the error has no part in it; or that no F exists."""
@@ -172,11 +156,6 @@ class FeedforwardDesign(Result):
             "closed_loop": response(self.loop, F if isinstance(F, Matrix) else Matrix.of([[F]])),
         }
 
-    @property
-    def all_certificates(self) -> tuple[Certificate, ...]:
-        """The certificates of the loop and of F."""
-        return (*self.loop.all_certificates, *self.certificates)
-
     @cached_property
     def gain_at_rest(self) -> Matrix:
         """G = (C − DK)(−A + BK)⁻¹B + D."""
@@ -200,24 +179,12 @@ class FeedforwardDesign(Result):
     def holds_where(self) -> tuple[Condition, ...]:
         """The conditions of the gains and of F."""
         factors = vanishing_factors([value.numerator for value in self.existence], self.plant.symbols.signs)
-        return joined(joined(super().holds_where, self.loop.holds_where), nonzero("existence", factors))
+        return joined(super().holds_where, nonzero("existence", factors))
 
-    @cached_property
-    def case_tree(self) -> tuple[Case, ...]:
-        """The strata of the gains, and those where the gain at rest loses its rank."""
-
-        def on(plant: StateSpace, values: dict[str, Scalar]) -> Result:
-            loop = self.loop.on(plant, values)
-            found: Result = plant.once(
-                (type(self), self.method, *loop.asked_for), lambda: type(self).of(loop, self.method)
-            )
-            return found
-
-        asked = {place.when: place for place in (*self._own_places, *self.loop.gain_places)}
-        return solved(self.plant, asked.values(), on)
+    own_first = True
 
     @property
-    def _own_places(self) -> tuple[Place, ...]:
+    def own_places(self) -> tuple[Place, ...]:
         """The strata where nothing comes to rest, or G loses its rank, its minors of the highest order being 0 together."""
         if self.answer["F"] is None:
             return ()

@@ -24,11 +24,9 @@ from symobs.exact import (
     solve_or_refute,
 )
 from symobs.exact.linear_algebra.transfer_function import Realisation
-from symobs.formula.tree import Environment, Literal, Roots
-from symobs.formula.tree.term import Term, block
+from symobs.formula.tree import Environment, Roots
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, Undecided
-from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.stability.criteria.stability import stability
 from symobs.system.conditions import Condition, vanishing_factors
@@ -45,16 +43,17 @@ from symobs.tasks.design.disturbance.disturbance_observer import (
     write_observer_of_both,
 )
 from symobs.tasks.design.gain.gain_cases import places_beside
-from symobs.tasks.design.gain.gain_design import FEEDBACK, letters_of, page_style
+from symobs.tasks.design.gain.gain_design import FEEDBACK, page_style
 from symobs.tasks.design.gain.gain_page import write_gain
 from symobs.tasks.design.page_parts import caution_poles
-from symobs.tasks.result import Case, Result, choose, equality, method, page_of, poles_of, task
+from symobs.tasks.result import Case, Result, choose, holds, method, page_of, poles_of, task
 from symobs.tasks.result.control_systems import Controller
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.exact import Root
+    from symobs.proof.certificate.claims import Certificate, Claim
     from symobs.system import StateSpace
     from symobs.system.specification import DesiredPolynomial, GainText, MatrixText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.strata.strata import Place
@@ -173,21 +172,18 @@ class OutputRegulation(Result):
         ):
             message = "the regulator equations have a solution exactly where nothing shows that they have none"
             raise CertificateRejected(message)
-        e = _environment(plant, self.exogenous, answer)
-        A, B, C, D, S, Q, E = (e[name] for name in ("A", "B", "C", "D", "S_w", "Q_r", "E_d"))
+        e = self.meanings(**self.exogenous._asdict())
         if K is not self.loop.answer["K"]:
-            yield equality(K, self.loop.answer["K"], e, "K is the certified gain")
+            yield holds(e, "K = {K}", "K is the certified gain", K=self.loop.answer["K"])
         if U is not None:
-            U_, V = e["U_r"], e["V_r"]
-            yield equality(U_ @ A + V @ C, S @ U_, e, "U*A + V*C = S*U")
-            yield equality(U_ @ B + V @ D, Matrix.zeros(self.exogenous.order, plant.inputs), e, "U*B + V*D = 0")
-            yield Claim(relation(self.obstacle, "!==", 0), e, "trace of U*E - V*Q is not 0")
+            yield holds(e, "U*A + V*C = S*U")
+            yield holds(e, "U*B + V*D = 0")
+            yield holds(e, "{trace} !== 0", "trace of U*E - V*Q is not 0", trace=self.obstacle)
         else:
-            Pi_, Gamma = e["Pi_w"], e["Gamma_w"]
-            yield equality(A @ Pi_ + B @ Gamma + E, Pi_ @ S, e, "A*Pi + B*Gamma + E = Pi*S")
-            yield equality(C @ Pi_ + D @ Gamma, Q, e, "C*Pi + D*Gamma = Q")
+            yield holds(e, "A*Pi + B*Gamma + E = Pi*S")
+            yield holds(e, "C*Pi + D*Gamma = Q")
             if F is not None:
-                yield equality(e["F_w"], Gamma + e["K"] @ Pi_, e, "F = Gamma + K*Pi")
+                yield holds(e, "F = Gamma + K*Pi")
         yield from _blocking_claims(plant, self.exogenous.S, answer["blocked"])
 
     @property
@@ -380,13 +376,6 @@ def solution(plant: StateSpace, exogenous: Exogenous, known: Mapping[str, Matrix
     return answer
 
 
-def _environment(plant: StateSpace, exogenous: Exogenous, answer: Mapping[str, Any]) -> Environment:
-    values = letters_of(plant) | {name: getattr(exogenous, of) for name, of in _LETTERS.items()}
-    own = {"Pi_w": "Pi", "Gamma_w": "Gamma", "K": "K", "F_w": "F", "U_r": "U", "V_r": "V"}
-    values |= {name: answer[of] for name, of in own.items() if answer[of] is not None}
-    return Environment(variable=plant.variable, values=values, signs=plant.symbols.signs)
-
-
 def _pencil(plant: StateSpace, factor: Scalar) -> tuple[Matrix, tuple[Scalar, ...]]:
     """Return [A − λI, B; C, D] at the roots λ of a factor, and what vanishes there."""
     m, variable = plant.matrices, plant.variable
@@ -428,10 +417,8 @@ def _blocking_claims(
         rest = S.characteristic_polynomial(plant.variable) / factor
         if not plant.equations and not rest.is_polynomial_in(plant.variable):
             raise CertificateRejected(f"{factor} is no factor of the characteristic polynomial of S")
-        w = e["w"]
-        annuls = relation(w @ Term(Literal(matrix), e), Matrix.zeros(1, matrix.shape[1]))
-        yield Claim(annuls, e, f"w*[A - lam*I, B; C, D] = 0 where {factor} = 0")
-        yield Claim(relation(w, "!==", Matrix.zeros(1, matrix.shape[0])), e, "w is not 0")
+        yield holds(e, "w {pencil} = 0", f"w*[A - lam*I, B; C, D] = 0 where {factor} = 0", pencil=matrix)
+        yield holds(e, "w !== 0", "w is not 0")
 
 
 def _estimator(
@@ -548,8 +535,8 @@ def _case(page: Builder, design: OutputRegulation) -> None:
             page.set(name, getattr(design.exogenous, of))
     _solution(page, design)
     if design.answer["F"] is not None:
-        K = page.set("K", design.answer["K"])
-        page.define("F_w", page["Gamma_w"] + K @ page["Pi_w"], say="regulation_gain")
+        page.set("K", design.answer["K"])
+        page.define("F_w", "Gamma_w + K Pi_w", say="regulation_gain")
     if design.estimator is not None:
         page.set("phi_o", design.estimator.desired.polynomial)
         name_extended(page, design.estimator, silent=True)
@@ -563,12 +550,11 @@ def _exosystem(page: Builder, design: OutputRegulation) -> None:
     page.set("Q_r", Q)
     if design.estimator is not None and not page.defines("E_d"):
         page.set("E_d", E)
-    w = page["w_e"]
-    page.dynamics("w_e", page["S_w"] @ w, silent=True)
-    page.signal("r_w", page["Q_r"] @ w, silent=True)
+    page.dynamics("w_e", page["S_w w_e"], silent=True)
+    page.signal("r_w", page["Q_r w_e"], silent=True)
     page.equal(
-        relation(w.derivative, page["S_w"] @ w, page["S_w"].as_value @ w),
-        relation(page["r_w"], page["Q_r"] @ w, page["Q_r"].as_value @ w),
+        "w_e' = S_w w_e = #S_w w_e",
+        "r_w = Q_r w_e = #Q_r w_e",
         say="regulation_exosystem_E" if design.exogenous.disturbs else "regulation_exosystem",
     )
     which = ("E" if design.exogenous.disturbs else "") + ("D" if page.plant.matrices.has_feedthrough else "")
@@ -586,36 +572,36 @@ def _solution(page: Builder, design: OutputRegulation) -> None:
     factors = [f for f in vanishing_factors(below, page.plant.symbols.signs) if f not in known]
     if factors:
         page.assume("regulation_provided", *factors)
-    Pi, Gamma = page.set("Pi_w", answer["Pi"]), page.set("Gamma_w", answer["Gamma"])
-    page.equal(relation(Pi, Pi.as_value), relation(Gamma, Gamma.as_value), say="regulation_solution", answer=True)
-    A, B, C = (page[name] for name in "ABC")
-    left = A @ Pi + B @ Gamma + page["E_d"] if design.exogenous.disturbs else A @ Pi + B @ Gamma
-    seen = C @ Pi + page["D"] @ Gamma if m.has_feedthrough else C @ Pi
-    page.verified("regulation_checked", state=relation(left, Pi @ page["S_w"]), output=relation(seen, page["Q_r"]))
+    page.set("Pi_w", answer["Pi"])
+    page.set("Gamma_w", answer["Gamma"])
+    page.equal("Pi_w = #", "Gamma_w = #", say="regulation_solution", answer=True)
+    E, D = " + E_d" if design.exogenous.disturbs else "", " + D Gamma_w" if m.has_feedthrough else ""
+    state, output = page.line(f"A Pi_w + B Gamma_w{E} = Pi_w S_w"), page.line(f"C Pi_w{D} = Q_r")
+    page.verified("regulation_checked", state=state, output=output)
 
 
 def _impossible(page: Builder, design: OutputRegulation) -> None:
     """Write U and V, and the zeros of the plant among the eigenvalues of S."""
     plant, answer = page.plant, design.answer
     n, p, q = plant.order, plant.outputs, design.exogenous.order
-    U, V = page.set("U_r", answer["U"]), page.set("V_r", answer["V"])
-    page.equal(relation(U, U.as_value), relation(V, V.as_value), say="regulation_obstacle")
-    D = page["D"] if plant.matrices.has_feedthrough else page.value(plant.matrices.D)
-    both = block([[page["A"], page["B"]], [page["C"], D]])
-    right = block([[page["S_w"] @ U, page.value(Matrix.zeros(q, plant.inputs))]])
-    say = "regulation_impossible_E" if design.exogenous.disturbs else "regulation_impossible"
-    found = design.obstacle if design.exogenous.disturbs else -design.obstacle
-    page.conclude(say, annuls=relation(block([[U, V]]) @ both, right), trace=page.value(found))
+    page.set("U_r", answer["U"])
+    page.set("V_r", answer["V"])
+    page.equal("U_r = #", "V_r = #", say="regulation_obstacle")
+    D = page["D"] if plant.matrices.has_feedthrough else plant.matrices.D
+    annuls = page.line("[U_r, V_r] [A, B; C, D] = [S_w U_r, {zero}]", D=D, zero=Matrix.zeros(q, plant.inputs))
+    disturbed = design.exogenous.disturbs
+    found = page.value(design.obstacle if disturbed else -design.obstacle)
+    page.conclude("regulation_impossible_E" if disturbed else "regulation_impossible", annuls=annuls, trace=found)
     blocked = answer["blocked"]
     if not blocked:
         return
     roots = product_of(factor for factor, _ in blocked)
-    of_S = page["S_w"].pencil.apply("det")
-    pencil = block([[page["A"] - page.s @ page.identity(n), page["B"]], [page["C"], D]])
+    pencil = page("[A - s I, B; C, D]", D=D)
+    of_S = page["det(pencil(S_w))"].scalar
     is_zero = rank(pencil.value, plant.ideal) == n + p
     page.conclude(
         "regulation_zeros" if is_zero else "regulation_rank",
-        modes=Roots((of_S / page.value(of_S.scalar / roots)).formula, roots_of(roots, plant.variable)),
+        modes=Roots(page("det(pencil(S_w)) / {rest}", rest=of_S / roots).formula, roots_of(roots, plant.variable)),
         pencil=pencil,
         size=page.value(n + p),
     )
@@ -623,34 +609,27 @@ def _impossible(page: Builder, design: OutputRegulation) -> None:
 
 def _state_law(page: Builder, design: OutputRegulation) -> None:
     """Write u = −K x + F w, and that x − Πw obeys the closed loop."""
-    K = page["K"]
-    F = page.define("F_w", page["Gamma_w"] + K @ page["Pi_w"], say="regulation_gain", answer=True)
-    page.signal("u", -K @ page["x"] + F @ page["w_e"], say="regulation_law")
+    page.define("F_w", "Gamma_w + K Pi_w", say="regulation_gain", answer=True)
+    page.signal("u", page["(-K) x + F_w w_e"], say="regulation_law")
     _deviation(page, design)
 
 
 def _deviation(page: Builder, design: OutputRegulation) -> None:
     """Write the equation of x − Πw and the control error, and whether they vanish."""
-    A, B, C, K, F = (page[name] for name in ("A", "B", "C", "K", "F_w"))
-    x = page.signal("x_w", page["x"] - page["Pi_w"] @ page["w_e"], silent=True)
-    rate, seen = (A - B @ K) @ x, C @ x
-    if page.plant.matrices.has_feedthrough:
-        seen = (C - page["D"] @ K) @ x
+    through = page.plant.matrices.has_feedthrough
+    page.signal("x_w", page["x - Pi_w w_e"], silent=True)
+    rate, seen = "(A - B K) x_w", "(C - D K) x_w" if through else "C x_w"
     if design.estimator is not None:
-        law = K @ page["e"] - F @ page["e_w"]
-        rate, seen = rate + B @ law, seen + page["D"] @ law if page.plant.matrices.has_feedthrough else seen
-    page.equal(
-        relation(x.derivative, rate),
-        relation(page["y"] - page["r_w"], seen),
-        say="regulation_deviation",
-        deviation=relation(x, page["x"] - page["Pi_w"] @ page["w_e"]),
-    )
+        rate += " + B (K e - F_w e_w)"
+        seen += " + D (K e - F_w e_w)" if through else ""
+    deviation = page.line("x_w = x - Pi_w w_e")
+    page.equal(f"x_w' = {rate}", f"y - r_w = {seen}", say="regulation_deviation", deviation=deviation)
     desired = design.loop.feedback.desired
     if desired is not None:
         caution_poles(page, desired, "phi_c", "state_feedback")
     if design.estimator is None and _is_surely_stable(design):
-        loop = FEEDBACK.error_determinant(page)
-        page.conclude("regulation_reached", relation(loop, page["phi_c"]), predicate("stable", page["phi_c"]))
+        loop = relation(FEEDBACK.error_determinant(page), page["phi_c"])
+        page.conclude("regulation_reached", loop, predicate("stable", page["phi_c"]))
 
 
 def _is_surely_stable(design: OutputRegulation) -> bool:
@@ -671,24 +650,16 @@ def _observer(page: Builder, design: OutputRegulation, estimator: DisturbanceObs
     write_gain_of_both(page, estimator)
     if not design.has_law:
         return
-    write_observer_of_both(page, estimator, page["E_d"] @ page["w_hat"], say="regulation_estimates")
-    K = page["K"]
-    F = page.define("F_w", page["Gamma_w"] + K @ page["Pi_w"], say="regulation_gain", answer=True)
-    page.signal("u", -K @ page["x_hat"] + F @ page["w_hat"], say="regulation_law")
+    write_observer_of_both(page, estimator, page["E_d w_hat"], say="regulation_estimates")
+    page.define("F_w", "Gamma_w + K Pi_w", say="regulation_gain", answer=True)
+    page.signal("u", page["(-K) x_hat + F_w w_hat"], say="regulation_law")
     _deviation(page, design)
-    A, B = page["A"], page["B"]
-    order = design.plant.order + design.exogenous.order
-    zero = page.value(Matrix.zeros(order, design.plant.order))
-    through = block([[B @ K, -B @ F]])
-    page.define(
-        "A_cl",
-        block([[A - B @ K, through], [zero, page["A_hat"] - page["L"] @ page["C_hat"]]]),
-        say="regulation_loop",
-    )
-    whole = page["A_cl"].pencil.apply("det")
+    zero = Matrix.zeros(design.plant.order + design.exogenous.order, design.plant.order)
+    loop = page("[A - B K, [B K, (-B) F_w]; {zero}, A_hat - L C_hat]", zero=zero)
+    page.define("A_cl", loop, say="regulation_loop")
     if design.loop.feedback.desired is None:
         return
-    both = page["phi_c"] @ page["phi_o"]
-    page.equal(relation(whole, both), say="regulation_polynomial")
+    whole = page.line("det(pencil(A_cl)) = phi_c phi_o")
+    page.equal(whole, say="regulation_polynomial")
     if _is_surely_stable(design):
-        page.conclude("regulation_reached_estimated", relation(whole, both), predicate("stable", both))
+        page.conclude("regulation_reached_estimated", whole, predicate("stable", page["phi_c phi_o"]))

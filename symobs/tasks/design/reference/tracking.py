@@ -8,17 +8,14 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.exact import Matrix, Scalar, independent_rows, solve_or_refute
+from symobs.exact import Matrix, independent_rows, solve_or_refute
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import block
+from symobs.formula.tree.written import stacked
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError
-from symobs.proof.certificate.claims import Certificate, Claim
-from symobs.proof.derivation.builder import Builder, relation
-from symobs.system.conditions import joined
 from symobs.system.specification import read_gain
 from symobs.tasks.analysis.page_parts import formula_of_factored, in_blocks
-from symobs.tasks.analysis.strata.strata import common_places, places, solved
+from symobs.tasks.analysis.strata.strata import common_places, places
 from symobs.tasks.design.compensator.compensator import observer_based, observer_order
 from symobs.tasks.design.compensator.compensator_page import caution_law
 from symobs.tasks.design.compensator.minimal_order_compensator_page import (
@@ -26,24 +23,24 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
     partitioned_gain,
     write_both_gains,
 )
-from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.design.compensator.of_loop import OfLoop
 from symobs.tasks.design.page_parts import draw_tracking
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
-from symobs.tasks.result import Case, Result, choose, equality, method, page_of, poles_of, task
+from symobs.tasks.result import Result, choose, holds, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.proof.certificate.claims import Claim
+    from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
-    from symobs.system.conditions import Condition
     from symobs.system.specification import MatrixText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.strata.strata import Place
     from symobs.tasks.design.compensator.output_feedback import OutputFeedback
-    from symobs.tasks.design.gain.gain_design import GainDesign
 
 
 @dataclass
-class TrackingDesign(Result):
+class TrackingDesign(OfLoop):
     """K_d with A_d − A + BK_d = 0, or with (A_d − A + BK_d) V = 0 for one trajectory; or why there is none.
 
     `loop` is the compensator whose gains are used, with its own claims.  The columns of V are x_d(0), A_d x_d(0), …, and
@@ -54,6 +51,7 @@ class TrackingDesign(Result):
     reference: Matrix
     start: Matrix | None
 
+    inputs = ("reference", "start")
     task: ClassVar[str] = "tracking"
     answered_by = ("K_d",)
     gains = ("K", "L")
@@ -82,52 +80,23 @@ class TrackingDesign(Result):
             answer["K_d"] = (Y @ back).normal()
         return cls(loop.plant, method_name, answer, loop, reference, start)
 
-    def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
-        """Return the design whose loop has other gains."""
-        return self.of(self.loop.with_gains(gains), self.reference, self.start, self.method)
-
-    def following_from(self, gains: Mapping[str, Matrix]) -> Self:
-        """Return the design whose loop has given gains."""
-        return self.of(self.loop.following_from(gains), self.reference, self.start, self.method)
-
-    def design_of(self, gain: str) -> GainDesign:
-        """Return the design of one half of the loop."""
-        return self.loop.design_of(gain)
-
-    @property
-    def has_reduced_observer(self) -> bool:
-        """The loop's estimator may be one."""
-        return self.loop.has_reduced_observer
-
     def claims(self) -> Iterator[Claim]:
         """Yield that the reference has no part in the error, or that no K_d makes it so; and the error's polynomial."""
         K_d, w = self.answer["K_d"], self.answer["w"]
         if (K_d is None) == (w is None):
             raise CertificateRejected("there is a K_d exactly where no row shows that there is none")
-        values = letters_of(self.plant) | {"A_ref": self.reference, "V_d": self.passed, "K_d": K_d, "w": w}
-        e = Environment(variable=self.plant.variable, values=values)
-        A, B, A_ref, V = (e[name] for name in ("A", "B", "A_ref", "V_d"))
+        e = self.meanings(A_d=self.reference, V=self.passed)
         if self.start is not None:
             yield from self._passed_through(e)
-        everywhere = self.start is None
         if w is not None:
-            row = e["w"]
-            left = row @ (A - A_ref) if everywhere else row @ (A - A_ref) @ V
-            yield equality(row @ B, Matrix.zeros(1, self.plant.inputs), e, "w*B = 0")
-            zero = Matrix.zeros(1, self.passed.shape[1])
-            yield Claim(
-                relation(left, "!==", zero), e, "w*(A - A_d) is not 0" if everywhere else "w*(A - A_d)*V is not 0"
-            )
+            yield holds(e, "w*B = 0")
+            yield holds(e, "w*(A - A_d) !== 0" if self.start is None else "w*(A - A_d)*V !== 0")
         else:
-            left = A_ref - A + B @ e["K_d"]
-            zero = Matrix.zeros(self.plant.order, self.passed.shape[1])
-            said = "A_d - A + B*K_d = 0" if everywhere else "(A_d - A + B*K_d)*V = 0"
-            yield equality(left if everywhere else left @ V, zero, e, said)
+            yield holds(e, "A_d - A + B*K_d = 0" if self.start is None else "(A_d - A + B*K_d)*V = 0")
         if self.has_gains:
-            values = {"A_e": self.matrix_of_errors, "phi": self.loop.loop_polynomial.value}
-            own = Environment(variable=self.plant.variable, values=values)
-            pencil = own["A_e"].pencil
-            yield equality(pencil.apply("det"), own["phi"], own, "det(s*I - error matrix) = phi_c*phi_o")
+            own = Environment(variable=self.plant.variable, values={"A": self.matrix_of_errors})
+            phi = self.loop.loop_polynomial.value
+            yield holds(own, "det(pencil(A)) = {phi}", "det(s*I - error matrix) = phi_c*phi_o", phi=phi)
 
     def _passed_through(self, e: Environment) -> Iterator[Claim]:
         """Yield that V holds the start and is carried into itself by A_d: V Z = [x_d(0), A_d V]."""
@@ -136,8 +105,7 @@ class TrackingDesign(Result):
         rows = independent_rows(V)
         target = Matrix.block([[self.start, self.reference @ V]])
         Z = V.select(rows, range(V.shape[1])).solve(target.select(rows, range(target.shape[1])))
-        inside = e.extended_by(values={"Z": Z, "x_d0": target})
-        yield equality(inside["V_d"] @ inside["Z"], inside["x_d0"], inside, "V*Z = [x_d(0), A_d*V]")
+        yield holds(e, "V {Z} = {target}", "V*Z = [x_d(0), A_d*V]", Z=Z, target=target)
 
     @cached_property
     def passed(self) -> Matrix:
@@ -148,11 +116,6 @@ class TrackingDesign(Result):
     def has_gains(self) -> bool:
         """Whether K and L exist, and the control law can be solved for u."""
         return self.loop.exists
-
-    @property
-    def all_certificates(self) -> tuple[Certificate, ...]:
-        """The certificates of the loop and of K_d."""
-        return (*self.loop.all_certificates, *self.certificates)
 
     @cached_property
     def matrix_of_errors(self) -> Matrix:
@@ -173,39 +136,16 @@ class TrackingDesign(Result):
             return self.loop.verdict
         return "no" if self.answer["K_d"] is None else super().verdict
 
-    @cached_property
-    def holds_where(self) -> tuple[Condition, ...]:
-        """The conditions of the gains and of K_d."""
-        return joined(super().holds_where, self.loop.holds_where)
-
-    @cached_property
-    def case_tree(self) -> tuple[Case, ...]:
-        """The strata of the gains, and where a reference that cannot be followed otherwise can."""
-
-        def on(plant: StateSpace, values: dict[str, Scalar]) -> Result:
-            start = None if self.start is None else self.start.substitute(values)
-            loop, reference = self.loop.on(plant, values), self.reference.substitute(values)
-            found: Result = plant.once(
-                (type(self), self.method, reference, start, *loop.asked_for),
-                lambda: type(self).of(loop, reference, start, self.method),
-            )
-            return found
-
-        return solved(self.plant, self._places, on)
-
     @property
-    def _places(self) -> tuple[Place, ...]:
-        """The strata of the gains, and where K_d is another one or a reference can be followed after all."""
+    def own_places(self) -> tuple[Place, ...]:
+        """Where K_d is another one, or a reference can be followed after all."""
         if self.answer["w"] is None:
             known = {condition.expression for condition in self.loop.holds_where}
-            own = [c.expression for c in super().holds_where if c.kind == "claim" and c.expression not in known]
-            found = (*self.loop.gain_places, *places(self.plant, own))
-            return tuple({place.when: place for place in found}.values())
+            own = [c.expression for c in self.own_conditions if c.kind == "claim" and c.expression not in known]
+            return places(self.plant, own)
         left = (self.answer["w"] @ (self.plant.matrices.A - self.reference) @ self.passed).normal()
         obstacles = [entry.numerator for entry in left.entries if not entry.is_zero]
-        if any(entry.is_constant for entry in obstacles):
-            return self.loop.gain_places
-        return (*self.loop.gain_places, *common_places(self.plant, obstacles))
+        return () if any(entry.is_constant for entry in obstacles) else common_places(self.plant, obstacles)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -315,12 +255,8 @@ def write_tracking(page: Builder, design: TrackingDesign) -> None:
 def _reference(page: Builder, design: TrackingDesign) -> None:
     """Write ẋ_d = A_d x_d."""
     page.set("A_ref", design.reference)
-    page.dynamics("x_d", page["A_ref"] @ page["x_d"], silent=True)
-    page.equal(
-        relation(page["x_d"].derivative, page["A_ref"] @ page["x_d"]),
-        relation(page["A_ref"], design.reference),
-        say="reference",
-    )
+    page.dynamics("x_d", page["A_ref x_d"], silent=True)
+    page.equal("x_d' = A_ref x_d", "A_ref = #", say="reference")
 
 
 def _law(page: Builder, design: TrackingDesign) -> None:
@@ -329,89 +265,56 @@ def _law(page: Builder, design: TrackingDesign) -> None:
     minimal = isinstance(design.loop.estimator, ReducedOrderObserver)
     if minimal:
         partitioned_gain(page)
-        shown = page["K_1"] @ page["x_1"] + page["K_2"] @ page["x_2_hat"]
-    else:
-        shown = page["K"] @ page["x_hat"]
-    page.signal("u", page["K"] @ page["x_d"] - shown - page["K_d"] @ page["x_d"], silent=True)
-    both = (page["K"] - page["K_d"]) @ page["x_d"] - shown
-    page.equal(
-        relation(page["u"], page["K"] @ (page["x_d"] - page["x_hat"]) - page["K_d"] @ page["x_d"], both),
-        say="tracking_law",
-    )
-    page.signal("e_d", page["x_d"] - page["x"], silent=True)
-    A, B, K = (page[name] for name in "ABK")
-    through = B @ page["K_2"] @ page["e_2"] if minimal else B @ K @ page["e"]
-    page.equal(
-        relation(
-            page["e_d"].derivative,
-            (A - B @ K) @ page["e_d"] + (page["A_ref"] - A + B @ page["K_d"]) @ page["x_d"] - through,
-        ),
-        say="tracking_error",
-        error=relation(page["e_d"], page["x_d"] - page["x"]),
-    )
+    shown = page["K_1 x_1 + K_2 x_2_hat" if minimal else "K x_hat"]
+    page.signal("u", page("K x_d - {shown} - K_d x_d", shown=shown), silent=True)
+    page.equal(page.line("u = K (x_d - x_hat) - K_d x_d = (K - K_d) x_d - {shown}", shown=shown), say="tracking_law")
+    page.signal("e_d", page["x_d - x"], silent=True)
+    through = "B K_2 e_2" if minimal else "B K e"
+    error = page.line("e_d = x_d - x")
+    page.equal(f"e_d' = (A - B K) e_d + (A_ref - A + B K_d) x_d - {through}", say="tracking_error", error=error)
 
 
 def _gain(page: Builder, design: TrackingDesign) -> None:
     """Write A_d − A + BK_d = 0, for every reference or for what one trajectory passes through."""
-    A, B = page["A"], page["B"]
-    order, columns = design.passed.shape
+    columns = design.passed.shape[1]
     if design.start is not None:
         page.set("x_d0", design.start)
-        passes = block([[page["A_ref"] ** k @ page["x_d0"] if k else page["x_d0"] for k in range(columns)]])
-        page.define("V_d", passes, say="tracking_condition_one", start=relation(page["x_d0"], design.start))
-    V = page["V_d"] if design.start is not None else None
+        passes = stacked("x_d0", "A_ref", columns, across=True)
+        page.define("V_d", passes, say="tracking_condition_one", start=page.line("x_d0 = #"))
     if design.answer["K_d"] is None:
         page.set("w_d", design.answer["w"])
-        w = page["w_d"]
-        left = w @ (A - page["A_ref"]) if V is None else w @ (A - page["A_ref"]) @ V
+        left = "w_d (A - A_ref)" + ("" if design.start is None else " V_d")
         page.conclude(
-            "tracking_impossible" if V is None else "tracking_impossible_one",
-            relation(left, "!==", Matrix.zeros(1, columns)),
-            row=relation(w, w.as_value),
-            annuls=relation(w @ B, Matrix.zeros(1, page.plant.inputs)),
-            left=relation(left, left.as_value),
+            "tracking_impossible" if design.start is None else "tracking_impossible_one",
+            page.line(f"{left} !== 0"),
+            row=page.line("w_d = #"),
+            annuls=page.line("w_d B = 0"),
+            left=page.line(f"{left} = #"),
         )
         return
     if not page.defines("K_d"):
         page.set("K_d", design.answer["K_d"])
-    K_d = page["K_d"]
-    zero = block([[page.value(Matrix.zeros(order, columns))]])
-    condition = page["A_ref"] - A + B @ K_d
-    page.equal(
-        relation(condition if V is None else condition @ V, zero),
-        say="tracking_condition" if V is None else "tracking_condition_then",
-    )
-    page.equal(relation(K_d, K_d.as_value), say="tracking_solved", answer=True)
-    if K_d.value.is_zero:
-        page.conclude("tracking_no_feedforward", relation(K_d, Matrix.zeros(*K_d.value.shape)))
+    held = "A_ref - A + B K_d" if design.start is None else "(A_ref - A + B K_d) V_d"
+    condition = page.line(f"{held} = [{{zero}}]", zero=Matrix.zeros(page.plant.order, columns))
+    page.equal(condition, say="tracking_condition" if design.start is None else "tracking_condition_then")
+    page.equal("K_d = #", say="tracking_solved", answer=True)
+    if design.answer["K_d"].is_zero:
+        page.conclude("tracking_no_feedforward", page.line("K_d = 0"))
 
 
 def _errors(page: Builder, design: TrackingDesign) -> None:
     """Write the block triangular matrix of both errors, and its polynomial."""
     minimal = isinstance(design.loop.estimator, ReducedOrderObserver)
-    A, B, C, K, L = (page[name] for name in "ABCKL")
     order, size = page.plant.order, design.matrix_of_errors.shape[0]
-    own = page["A_22"] - L @ page["A_12"] if minimal else A - L @ C
-    through = B @ page["K_2"] if minimal else B @ K
-    zero = page.value(Matrix.zeros(size - order, order))
-    one = design.start is not None
-    whole, parts = block([[A - B @ K, -through], [zero, own]]), [order, size - order]
-    page.define(
-        "A_e",
-        whole,
-        in_blocks(page, whole.value, parts, parts),
-        say="tracking_errors_one" if one else "",
-        silent=not one,
-        closing=False,
-    )
+    own, through = ("A_22 - L A_12", "B K_2") if minimal else ("A - L C", "B K")
+    one, parts = design.start is not None, [order, size - order]
+    whole = page(f"[A - B K, -({through}); {{zero}}, {own}]", zero=Matrix.zeros(size - order, order))
+    divided = in_blocks(page, whole.value, parts, parts)
+    say = "tracking_errors_one" if one else ""
+    page.define("A_e", whole, divided, say=say, silent=not one, closing=False)
     if not one:
-        state = block([[page["e_d"]], [page["e_2" if minimal else "e"]]])
-        page.equal(
-            relation(state.derivative, whole @ state, in_blocks(page, whole.value, parts, parts) @ state),
-            say="tracking_errors",
-            answer=True,
-        )
-    determinant = page["A_e"].pencil.apply("det")
-    page.equal(
-        relation(determinant, page.term(formula_of_factored(design.loop.loop_polynomial))), say="tracking_polynomial"
-    )
+        state = "[e_d; e_2]" if minimal else "[e_d; e]"
+        chain = page.line(f"{state}' = {{whole}} {state} = {{divided}} {state}", whole=whole, divided=divided)
+        page.equal(chain, say="tracking_errors", answer=True)
+    polynomial = page.term(formula_of_factored(design.loop.loop_polynomial))
+    page.equal(page.line("det(pencil(A_e)) = {polynomial}", polynomial=polynomial), say="tracking_polynomial")
