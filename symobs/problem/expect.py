@@ -17,7 +17,7 @@ from symobs.formula.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import CertificateRejected, InputError, OpenEquality, ProblemErrors, SymobsError
 from symobs.problem.agreement import agrees, functions_agree
-from symobs.system.conditions import Condition
+from symobs.system.conditions import Condition, vanishing_factors
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
@@ -275,12 +275,20 @@ def conditions_agree(
     found: Iterable[Any], expected: Iterable[Any], names: Any, where: str, signs: Mapping[str, str]
 ) -> bool:
     """Return whether two conjunctions of relations are proved equivalent."""
-    ours = {relation(str(entry), names, where) for entry in found}
-    theirs = {relation(entry, names, where) for entry in expected}
+    ours = {each for entry in found for each in _factor_by_factor(relation(str(entry), names, where), signs)}
+    theirs = {each for entry in expected for each in _factor_by_factor(relation(entry, names, where), signs)}
     if any(decimals_in(value) for value, _ in theirs):
         pairs = [(mine, other) for other in theirs for mine in ours if relations_agree(other, mine)]
         return {mine for mine, _ in pairs} == ours and {other for _, other in pairs} == theirs
     return ours == theirs or (_implies(ours, theirs, signs) and _implies(theirs, ours, signs))
+
+
+def _factor_by_factor(condition: tuple[Scalar, str], signs: Mapping[str, str]) -> Iterable[tuple[Scalar, str]]:
+    """Return for a product that must not vanish its factors, without those that the signs keep from it."""
+    value, operator = condition
+    if operator != "!=" or value.is_zero or decimals_in(value):
+        return [condition]
+    return [(factor, operator) for factor in vanishing_factors([value], signs)]
 
 
 def _implies(
@@ -462,8 +470,10 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     """Return whether an expected answer equals that of the result."""
     found, names, variable = found_in(result, name), names_of(result), result.plant.variable
     signs = result.plant.symbols.signs
-    if found is None and isinstance(expected, (str, list)) and (near := _digits(result, name)) is not None:
-        return agrees(parse_matrix(expected, names, where=where, rounding=True), near)
+    if found is None and isinstance(expected, (str, list)):
+        near = digits_of(result, name, 2 * len(str(expected)))
+        if near is not None:
+            return agrees(parse_matrix(expected, names, where=where, rounding=True), near)
     in_time = result.in_time or result.plant.is_time_varying
     if in_time and isinstance(found, (Matrix, Scalar)):
         time = result.argument if result.in_time else "t"
@@ -505,13 +515,19 @@ def is_digits(value: Any) -> bool:
     return isinstance(value, str) and re.fullmatch(r"-?\d+(\.\d+)?", value) is not None
 
 
-def _digits(result: Answered, name: str) -> Matrix | None:
-    """Return the certain digits of a matrix without a closed form."""
+def digits_of(result: Answered, name: str, digits: int) -> Matrix | None:
+    """Return a matrix without a closed form to so many certain digits, None where there are none."""
     whole, (own, sign) = (
         (result.result, result.standard(name)) if isinstance(result, ResultInConvention) else (result, (name, 1))
     )
-    table = whole.decimals.get(own)
-    return None if table is None else Matrix.of([[Fraction(entry) * sign for entry in row] for row in table])
+    table = whole.decimals_to(min(digits, _MOST_DIGITS)).get(own) if own in whole.decimals else None
+    if not isinstance(table, list) or not all(isinstance(row, list) for row in table):
+        return None
+    return Matrix.of([[Fraction(entry) * sign for entry in row] for row in table])
+
+
+#: More digits than these are not computed.
+_MOST_DIGITS = 200
 
 
 def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where: str) -> bool:

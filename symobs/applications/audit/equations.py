@@ -151,7 +151,9 @@ class Reading:
 
     def fails_where(self, values: Iterable[Scalar], says: str) -> None:
         """Note that something fails where all these values are 0."""
-        names = self.environment.signs.keys()
+        values, names = tuple(values), self.environment.signs.keys()
+        if any(roots_in(value) and self.where.sign(value) in _NEVER_ZERO for value in values):
+            return  # of its norm a factor may vanish that belongs to other signs of the roots
         found = [part for value in values for part in coefficients_over(_norm(value), names)]
         if not any(part.is_constant and not part.is_zero for part in found):
             self.gaps.append(Gap(tuple(found), says))
@@ -171,6 +173,10 @@ class Reading:
         if factor not in self.squares:
             self.squares.append(factor)
         return -1 if factor in self.turned else 1
+
+
+#: The signs of what never vanishes.
+_NEVER_ZERO = {"positive", "negative", "nonzero"}
 
 
 def _norm(value: Scalar) -> Scalar:

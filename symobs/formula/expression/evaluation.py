@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from itertools import chain
-from math import floor
+from math import floor, prod
 from operator import add, mul, sub, truediv
 from typing import TYPE_CHECKING, Any
 
@@ -341,7 +341,7 @@ class Evaluator:
         instead = "sqrt of a rational number is possible; for other constants declare a symbol"
         if not self.roots:
             raise self.source.error("sqrt of this has no exact value here", place, instead)
-        return generators.square_root(self._with_one_root(place, number))
+        return self._square_root(place, number)
 
     def _function(self, name: str, place: int, argument: Number) -> Scalar:
         if isinstance(argument, Complex):
@@ -352,20 +352,44 @@ class Evaluator:
             if argument.is_zero:
                 return argument
             known = root_in_field(argument) if is_number(argument) else None
-            return generators.square_root(self._with_one_root(place, argument)) if known is None else known
+            return self._square_root(place, argument) if known is None else known
         except generators.NotWritten as error:
             raise self.source.error(str(error), place, "declare a symbol for it") from None
         except ZeroDivisionError:
             fault = "sqrt of a negative number" if name == "sqrt" else f"{name} has no value there"
             raise self.source.error(fault, place, "write what is real") from None
 
-    def _with_one_root(self, place: int, radicand: Scalar) -> Scalar:
-        """Return the radicand; sqrt(a^2) is a or -a, decided by the sign of a."""
-        for factor, power in radicand.factors()[1]:
-            if power % 4 == 2 and self.names.get(str(factor)) not in {"positive", "nonnegative"}:
+    def _square_root(self, place: int, radicand: Scalar) -> Scalar:
+        """Return the root that is not negative: sqrt(a^2) is a or -a, decided by the signs of what stands in a."""
+        root = generators.square_root(radicand)
+        unit, factors = radicand.factors()
+        odd = [factor for factor, power in factors if power % 2]
+        for factor, power in factors:
+            if power % 4 < 2:  # an even power of it stands before the root
+                continue
+            side = self._side(factor)
+            if odd == [factor] and unit.is_constant:  # which is real for one sign of it alone
+                side = 1 if unit.fraction() > 0 else -1
+            if not side:
                 message = f"sqrt of a square: {shown(str(factor))} may be negative"
                 raise self.source.error(message, place, "write it without sqrt, or declare the symbol positive")
-        return radicand
+            root = root if side > 0 else -root
+        return root
+
+    def _side(self, factor: Scalar) -> int:
+        """Return the side of 0 on which a factor lies by the signs of its terms: 1, -1, or 0 where they do not say."""
+        sides = set()
+        for coefficient, powers in factor.terms():
+            odd = [self._side_of(name) for name, power in powers if power % 2]
+            sides.add(prod(odd, start=1 if coefficient > 0 else -1))
+        return sides.pop() if len(sides) == 1 else 0
+
+    def _side_of(self, name: str) -> int:
+        found = generators.function_named(name)
+        if found is not None:
+            return int(found.kind in {"sqrt", "exp", "cosh"})
+        sign = self.names.get(name)
+        return int(sign in {"positive", "nonnegative"}) - int(sign in {"negative", "nonpositive"})
 
     def _number(self, entry: Entry) -> Number:
         if isinstance(entry, MatrixRows):

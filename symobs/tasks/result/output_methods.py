@@ -181,6 +181,10 @@ class OutputMethods:
         """The nearest doubles of the answers that are numbers, also of those without a closed form, as JSON has them."""
         return doubles_of(self.fields)
 
+    def decimals_to(self, digits: int) -> dict[str, Any]:  # noqa: ARG002 - for results that can find more of them
+        """Return the decimals with so many digits where more can be found."""
+        return self.decimals
+
     def evaluate(self, points: Mapping[Any, Any]) -> dict[str, Any]:
         """Return a NumPy array for each field at arrays of points: `result.evaluate({"k": np.linspace(1, 2, 100)})`.
 

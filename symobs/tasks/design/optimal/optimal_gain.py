@@ -354,7 +354,14 @@ class OptimalGain(Result):
     @property
     def decimals(self) -> dict[str, Any]:
         """Certain digits of the gain and of P, where the data are numbers: to half a unit of the last place."""
-        digits: Enclosure | None = self.answer["digits"]
+        return self._decimals(self.answer["digits"])
+
+    def decimals_to(self, digits: int) -> dict[str, Any]:
+        """Return so many certain digits of the gain and of P, or those that there are."""
+        found = self.answer["digits"]
+        return self._decimals((found and enclosed_solution(self.regulator, digits)) or found)
+
+    def _decimals(self, digits: Enclosure | None) -> dict[str, Any]:
         if digits is None:
             return {}
         columns = [*map(list, zip(*digits.K, strict=True))]

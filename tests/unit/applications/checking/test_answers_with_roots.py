@@ -49,7 +49,7 @@ def audited(problem: Problem, text: str) -> str:
         found = audit(read(f'{problem.text}\n[[printed]]\nrelation = "{problem.field} = {text}"'))
     except ProblemErrors as error:
         return "undecided" if {*map(type, error.errors)} == {OpenEquality} else str(error)
-    return "wrong" if found.findings else "right"
+    return "wrong" if any(not finding.holds for finding in found.findings) else "right"
 
 
 def judged(problem: Problem, text: str) -> tuple[str, str]:
