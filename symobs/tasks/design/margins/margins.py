@@ -118,11 +118,10 @@ class Margins(Result):
             yield equality(closed, _plain(self.design.fields[_LOOPS[self.design.task][0]]), e, "P + N of the design")
         else:
             A, B, C, D, F = (e[name] for name in "ABCDF")
-            yield equality(e["chi_o"], whole @ e["q"], e, "P = det(s*I - A) times that of F")
+            yield equality(e["chi_o"], whole @ e["q"], e)
             G = C @ A.pencil.inverse @ B + D
             one = identity(1, e)
-            said = "P + N = P*(1 + F*G)"
-            yield equality(e["chi_cl"] @ one, e["chi_o"] @ (one + F @ G), e, said)
+            yield equality(e["chi_cl"] @ one, e["chi_o"] @ (one + F @ G), e)
         if answer["slowest"] is not None:
             yield Statement("the slowest root", lambda: "exact" if self._slowest == answer["slowest"] else "")
         if answer["modulus"] is not None:

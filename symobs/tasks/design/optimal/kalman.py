@@ -8,7 +8,6 @@ from symobs.exact import Matrix
 from symobs.exact.floating.riccati_check import Regulator
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import ShapeMismatch
-from symobs.proof.derivation.builder import relation
 from symobs.system import read_matrix
 from symobs.system.specification import from_list
 from symobs.tasks.design.optimal.optimal_gain import OptimalGain, design_optimal
@@ -16,10 +15,8 @@ from symobs.tasks.design.optimal.optimal_page import write_optimal
 from symobs.tasks.result import Result, method, page_of, task
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
-    from symobs.formula.tree import Relation
-    from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
     from symobs.system.conditions import Condition
     from symobs.system.specification import Intensity, MatrixText, Name
@@ -44,24 +41,11 @@ class OptimalFilter(OptimalGain):
         return Regulator(m.A.T, m.C.T, (G @ weights["W"] @ G.T).normal(), weights["V"], nothing, plant.is_discrete)
 
     @staticmethod
-    def equations(
-        of: Callable[[str], Term],
-        *,
-        discrete: bool,
-        cross: bool = True,  # noqa: ARG004 - of the regulator
-    ) -> tuple[tuple[Relation, str], ...]:
+    def equations(*, discrete: bool, cross: bool = True) -> tuple[str, str]:  # noqa: ARG004 - of the regulator
         """Return Riccati's equation and that of L."""
-        A, C, V, L, P, noise = *map(of, ("A", "C", "V", "L", "P")), of("noise")
         if discrete:
-            inner = V + C @ P @ C.T
-            return (
-                (relation(A @ P @ A.T - P + noise, L @ inner @ L.T), "A*P*A.T - P + G*W*G.T = L*(V + C*P*C.T)*L.T"),
-                (relation(L @ inner, A @ P @ C.T), "L*(V + C*P*C.T) = A*P*C.T"),
-            )
-        return (
-            (relation(A @ P + P @ A.T + noise, L @ V @ L.T), "A*P + P*A.T + G*W*G.T = L*V*L.T"),
-            (relation(L @ V, P @ C.T), "L*V = P*C.T"),
-        )
+            return "A*P*A.T - P + noise = L*(V + C*P*C.T)*L.T", "L*(V + C*P*C.T) = A*P*C.T"
+        return "A*P + P*A.T + noise = L*V*L.T", "L*V = P*C.T"
 
 
 page_of(OptimalFilter)(write_optimal)

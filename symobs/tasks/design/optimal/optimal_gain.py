@@ -42,14 +42,13 @@ from symobs.system.specification import over_common_data, read_symmetric
 from symobs.tasks.analysis.modes.modes import polynomial_of
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stable_factors, with_signs
-from symobs.tasks.result import Case, Result, choose, equality
+from symobs.tasks.result import Case, Result, choose, equality, holds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from symobs.exact.floating.riccati import Enclosure
     from symobs.exact.floating.riccati_check import Regulator
-    from symobs.formula.tree import Relation
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
     from symobs.tasks.analysis.strata.strata import Place
@@ -98,8 +97,8 @@ class OptimalGain(Result):
         return of("A") - (of("B") @ of("K") if cls.letter == "K" else of("L") @ of("C"))
 
     @staticmethod
-    def equations(of: Callable[[str], Term], *, discrete: bool, cross: bool = True) -> tuple[tuple[Relation, str], ...]:
-        """Return Riccati's equation and that of the gain, with their texts."""
+    def equations(*, discrete: bool, cross: bool = True) -> tuple[str, str]:
+        """Return Riccati's equation and that of the gain; `noise` is G W Gᵀ."""
         raise NotImplementedError
 
     # -- construction ------------------------------------------------------------------------------------------------
@@ -184,9 +183,9 @@ class OptimalGain(Result):
         def of(name: str) -> Term:
             return e[name]
 
-        yield equality(of("P"), of("P").T, e, "P = P.T")
-        for equation, says in self.equations(of, discrete=plant.is_discrete):
-            yield Claim(equation, e, says)
+        yield holds(e, "P = P.T")
+        for equation in self.equations(discrete=plant.is_discrete):
+            yield holds(e, equation)
         pencil = e["s"] @ identity(plant.order, e) - self.loop(of)
         yield equality(pencil.apply("det"), of("p"), e, "the polynomial is that of the loop")
         v, factors = plant.variable, self.answer["factors"]
@@ -208,12 +207,10 @@ class OptimalGain(Result):
         A, _, Q = regulator.uncrossed
         row, of = (regulator.B.T, regulator.A.T) if found.kind == "uncontrollable" else (Q, A)
         e = Environment(variable=plant.variable, values={"row": row, "of": of, "N": found.N, "X": found.X})
-        N, X = e["N"], e["X"]
-        yield equality(e["row"] @ N, Matrix.zeros(row.shape[0], found.N.shape[1]), e, "N is hidden")
-        yield equality(e["of"] @ N, N @ X, e, "N is invariant")
-        yield equality(N.apply("rank"), found.N.shape[1], e, "N has full rank")
-        pencil = X.pencil
-        yield equality(pencil.apply("det"), found.polynomial, e, "the polynomial of the hidden modes")
+        yield holds(e, "row*N = 0", "N is hidden")
+        yield holds(e, "of*N = N*X", "N is invariant")
+        yield holds(e, f"rank(N) = {found.N.shape[1]}", "N has full rank")
+        yield holds(e, "det(pencil(X)) = {modes}", "the polynomial of the hidden modes", modes=found.polynomial)
         signs, variable, discrete = plant.symbols.signs, plant.variable, plant.is_discrete
         if found.kind == "uncontrollable":
             is_unstable = stability(found.polynomial, variable, signs, discrete=discrete).verdict == "no"
