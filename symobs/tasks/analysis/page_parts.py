@@ -18,6 +18,7 @@ from symobs.exact import (
     roots_of,
 )
 from symobs.exact.core.generators import NotWritten, exponentials_in, symbols_named
+from symobs.exact.numerals.written_digits import DATA_DIGITS
 from symobs.formula.tree import (
     Conjunction,
     Decimals,
@@ -193,6 +194,8 @@ def given(
         _hold_to_letters(page, by)
         if plant.is_from_floats:
             page.remark("from_floats")
+        if plant.is_rounded:
+            page.remark("data_rounded", digits=str(DATA_DIGITS))
         _say_decimals(page)
         state_signs(page)
         _state_stratum(page, where)

@@ -181,6 +181,11 @@ class OutputMethods:
         """The nearest doubles of the answers that are numbers, also of those without a closed form, as JSON has them."""
         return doubles_of(self.fields)
 
+    @property
+    def numbers(self) -> Mapping[str, Any]:
+        """The fields as programs use them: certain digits, as rational numbers, stand for what has no closed form."""
+        return self.fields
+
     def decimals_to(self, digits: int) -> dict[str, Any]:  # noqa: ARG002 - for results that can find more of them
         """Return the decimals with so many digits where more can be found."""
         return self.decimals
@@ -222,7 +227,7 @@ class OutputMethods:
         if name.startswith("_") or name not in self.fields:
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
         if name not in self._objects:
-            self._objects[name] = to_sympy(self.fields[name], self.plant.symbols.objects)
+            self._objects[name] = to_sympy(self.numbers[name], self.plant.symbols.objects)
         return self._objects[name]
 
     @cached_property
@@ -237,6 +242,9 @@ class OutputMethods:
     def __repr__(self) -> str:
         """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
         parts = {name: value for name, value in self.answer.items() if value is not None}
+        for name in self.answered_by if self.numbers is not self.fields else ():  # the digits themselves
+            parts[name] = "[" + "; ".join(" ".join(row) for row in self.decimals[name]) + "]"
+            parts.pop("digits", None)
         long = {name: size for name, value in parts.items() if (size := getattr(value, "size", 0)) > _TERMS_SHOWN}
         shown = [f"{name}=<{long[name]} terms>" if name in long else f"{name}={value}" for name, value in parts.items()]
         verdict = "" if long else f", verdict={self.verdict!r}"

@@ -49,9 +49,11 @@ if TYPE_CHECKING:
 
     from symobs.exact.floating.riccati import Enclosure
     from symobs.exact.floating.riccati_check import Regulator
+    from symobs.exact.linear_algebra.transfer_function import Realisation
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
     from symobs.tasks.analysis.strata.strata import Place
+    from symobs.tasks.design.gain.gain_design import GainDesign
 
 #: With more states the proof of the digits takes seconds; with parameters no square roots write the factor in general.
 MOST_STATES, MOST_WITH_PARAMETERS = 12, 2
@@ -79,6 +81,9 @@ class OptimalGain(Result):
     needed: tuple[Condition, ...] = ()
 
     letter: ClassVar[str]
+    design_kind: ClassVar[type[GainDesign]]
+    #: What stands beside the gain among the answers.
+    of_loop: ClassVar[tuple[str, ...]]
     panels = ("plane",)
 
     @staticmethod
@@ -229,13 +234,22 @@ class OptimalGain(Result):
             return "undecided"
         return "no" if self.answer["obstacle"] is not None else super().verdict
 
+    @cached_property
+    def as_given(self) -> GainDesign | None:
+        """The gain as a given one: exact, else its certain digits, with which the loop is stable; None where there is none."""
+        gain = self.numbers[self.letter]
+        return None if gain is None else self.design_kind.of_given(self.plant, gain)
+
     @property
     def loop_matrix(self) -> Matrix | None:
-        """A − BK, or A − LC, of the exact gain, else of the certain digits; None where there is no gain."""
-        gain, m = self.answer[self.letter], self.plant.matrices
-        if gain is None and self.decimals:
-            gain = Matrix.of([[Fraction(entry) for entry in row] for row in self.decimals[self.letter]])
-        return None if gain is None else m.A - (m.B @ gain if self.letter == "K" else gain @ m.C)
+        """A − BK, or A − LC, of the gain as it is given."""
+        found: Matrix | None = self.numbers[self.of_loop[0]]
+        return found
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """Those of the gain as it is given."""
+        return super().systems if self.as_given is None else self.as_given.systems
 
     @cached_property
     def even(self) -> Scalar:
@@ -345,8 +359,21 @@ class OptimalGain(Result):
             moved = [to_disc(factor, v) for factor in factors] if plant.is_discrete else factors
             poles = tuple(root for factor in moved for root in roots_of(factor, v))
         found = {self.letter: answer[self.letter], "P": answer["P"], "polynomial": answer["polynomial"], "poles": poles}
-        asked = answer["question"]
+        gain, asked, m = answer[self.letter], answer["question"], plant.matrices
+        if self.letter == "K":
+            found["closed_loop_matrix"] = None if gain is None else (m.A - m.B @ gain).normal()
+        else:
+            found["A"] = None if gain is None else (m.A - gain @ m.C).normal()
+            found |= {"B_u": None if gain is None or not m.has_input else (m.B - gain @ m.D).normal(), "B_y": gain}
         return {**found, "modes": self.hidden_modes, **({} if asked is None else {"question": asked})}
+
+    @cached_property
+    def numbers(self) -> Mapping[str, Any]:
+        """The fields, and where no square roots write them the certain digits of gain and P as rational numbers."""
+        digits = self.decimals if self.answer[self.letter] is None else {}
+        exact = {name: Matrix.of([[Fraction(e) for e in row] for row in rows]) for name, rows in digits.items()}
+        of_gain = self.design_kind.of_given(self.plant, exact[self.letter]).fields if exact else {}
+        return {**self.fields, **{name: of_gain[name] for name in self.of_loop if name in of_gain}, **exact}
 
     @property
     def decimals(self) -> dict[str, Any]:
