@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -45,7 +46,7 @@ def test_no_door_of_a_small_plant_is_a_bug(part: int) -> None:
         chance, name = random.Random(seed), names[seed % len(names)]  # noqa: S311 - repeats
         try:
             problem = small_problem(name, chance)
-            said = symobs.bounded(lambda name=name, problem=problem: faults(name, problem), timeout=5)
+            said = symobs.bounded(partial(faults, name, problem), timeout=5)
         except (SymobsError, ZeroDivisionError):  # no such plant, or not in this time
             continue
         if said.split()[0].isupper():

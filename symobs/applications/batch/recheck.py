@@ -15,14 +15,21 @@ import re
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
+from symobs.applications.export.grader.claims import faddeev_leverrier, minus, negative, transfer, transpose
+from symobs.applications.export.grader.claims import product as times
+from symobs.applications.export.grader.values import ONE, UnreadableError, VanishingError, number, poly
+from symobs.applications.export.grader.values import read as read_value
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
+    from symobs.applications.export.grader.values import Ratio
+
 Matrix = list[list[Fraction]]
 
-_TOKEN = re.compile(r"\s*([0-9]+|[A-Za-z_][A-Za-z0-9_]*|\*\*|[-+*/()])")
 _MOST_DRAWS = 30
-_LARGEST_POWER = 10_000
+#: A product without its sign, which our texts never have.
+_UNSIGNED = re.compile(r"[\w)]\s+[\w(]|\b\d+[A-Za-z_(]")
 
 
 class Beyond(ArithmeticError):
@@ -69,70 +76,23 @@ def _drawn(sign: str, drawn: random.Random) -> Fraction:
 # -- reading ----------------------------------------------------------------------------------------------------------
 
 
-def value(text: str, names: Mapping[str, Fraction]) -> Fraction:
-    """Return the value of a text such as `(2*a**2 - 1)/(3*b)`; raises `Beyond` for other functions and names."""
-    tokens = [*_tokens(text), ""]
-    found, place = _sum(tokens, 0, names)
-    if tokens[place]:
+def ratio(text: str, names: Mapping[str, Fraction], variable: str = "") -> Ratio:
+    """Return the value of a text, a function of the variable; raises `Beyond` for other functions and names."""
+    letters = {name: (poly([value]), ONE) for name, value in names.items()}
+    letters |= {variable: (poly([0, 1]), ONE)} if variable else {}
+    if _UNSIGNED.search(text):
         raise Beyond(text)
-    return found
+    try:
+        return read_value(text, letters)
+    except VanishingError as error:
+        raise ZeroDivisionError from error
+    except UnreadableError as error:
+        raise Beyond(text) from error
 
 
-def _tokens(text: str) -> list[str]:
-    found, place = [], 0
-    text = text.rstrip()
-    while place < len(text):
-        token = _TOKEN.match(text, place)
-        if token is None:
-            raise Beyond(text)
-        found.append(token[1])
-        place = token.end()
-    return found
-
-
-def _sum(tokens: Sequence[str], place: int, names: Mapping[str, Fraction]) -> tuple[Fraction, int]:
-    total, place = _product(tokens, place, names)
-    while tokens[place] in {"+", "-"}:
-        sign = 1 if tokens[place] == "+" else -1
-        term, place = _product(tokens, place + 1, names)
-        total += sign * term
-    return total, place
-
-
-def _product(tokens: Sequence[str], place: int, names: Mapping[str, Fraction]) -> tuple[Fraction, int]:
-    total, place = _signed(tokens, place, names)
-    while tokens[place] in {"*", "/"}:
-        operator = tokens[place]
-        factor, place = _signed(tokens, place + 1, names)
-        total = total * factor if operator == "*" else total / factor
-    return total, place
-
-
-def _signed(tokens: Sequence[str], place: int, names: Mapping[str, Fraction]) -> tuple[Fraction, int]:
-    if tokens[place] in {"+", "-"}:
-        found, after = _signed(tokens, place + 1, names)
-        return (found if tokens[place] == "+" else -found), after
-    base, place = _atom(tokens, place, names)
-    if tokens[place] != "**":
-        return base, place
-    exponent, place = _signed(tokens, place + 1, names)
-    if exponent.denominator != 1 or abs(exponent) > _LARGEST_POWER:
-        raise Beyond(str(exponent))
-    return base ** int(exponent), place
-
-
-def _atom(tokens: Sequence[str], place: int, names: Mapping[str, Fraction]) -> tuple[Fraction, int]:
-    word = tokens[place]
-    if word == "(":
-        found, place = _sum(tokens, place + 1, names)
-        if tokens[place] != ")":
-            raise Beyond("a bracket is not closed")
-        return found, place + 1
-    if word.isdigit():
-        return Fraction(int(word)), place + 1
-    if word not in names or tokens[place + 1] == "(":
-        raise Beyond(word)
-    return names[word], place + 1
+def value(text: str, names: Mapping[str, Fraction]) -> Fraction:
+    """Return the value of a text such as `(2*a**2 - 1)/(3*b)`."""
+    return number(ratio(text, names))
 
 
 class _Read:
@@ -158,14 +118,14 @@ class _Read:
         rows = self.answer.get(name)
         return None if rows is None else self.matrix(rows)
 
-    def function(self, text: str) -> Callable[[Fraction], Fraction]:
+    def function(self, text: str) -> Ratio:
         """Return a text as a function of the variable."""
-        name = self.given["variable"]
-        return lambda at: value(text, {**self.point, name: at})
+        return ratio(text, self.point, self.given["variable"])
 
-    def same(self, left: str, right: Callable[[Fraction], Fraction], degree: int) -> bool:
-        """Return whether a text agrees with a function at more places than two of this degree can by chance."""
-        return all(self.function(left)(at) == right(at) for at in _places(degree + 1))
+    def functions(self, name: str) -> list[list[Ratio]]:
+        """Return an answer, one text or rows of texts, as functions of the variable."""
+        found = self.answer[name]
+        return [[self.function(entry) for entry in row] for row in ([[found]] if isinstance(found, str) else found)]
 
     def wanted(self, half: str) -> str | None:
         """Return the polynomial asked for, None where a gain was given."""
@@ -173,76 +133,31 @@ class _Read:
         return found
 
 
-def _places(count: int) -> list[Fraction]:
-    """Return values of s that are hardly poles of anything."""
-    return [Fraction(10007 * k + 3, 1009) for k in range(1, count + 1)]
-
-
-# -- matrices ---------------------------------------------------------------------------------------------------------
-
-
 def zeros(rows: int, columns: int) -> Matrix:
     """Return a matrix of zeros."""
     return [[Fraction(0)] * columns for _ in range(rows)]
 
 
-def times(a: Matrix, b: Matrix) -> Matrix:
-    """Return a b."""
-    columns = list(zip(*b, strict=True))
-    return [[sum((x * y for x, y in zip(row, column, strict=True)), Fraction(0)) for column in columns] for row in a]
-
-
-def minus(a: Matrix, b: Matrix) -> Matrix:
-    """Return a − b."""
-    return [[x - y for x, y in zip(left, right, strict=True)] for left, right in zip(a, b, strict=True)]
-
-
-def plus(a: Matrix, b: Matrix) -> Matrix:
-    """Return a + b."""
-    return [[x + y for x, y in zip(left, right, strict=True)] for left, right in zip(a, b, strict=True)]
-
-
-def pencil(matrix: Matrix, at: Fraction) -> Matrix:
-    """Return s I − matrix."""
-    return [[(at if i == j else 0) - entry for j, entry in enumerate(row)] for i, row in enumerate(matrix)]
-
-
-def reduced(matrix: Matrix) -> tuple[Matrix, Fraction, int]:
-    """Return the matrix after elimination, the product of its pivots with sign, and its rank."""
-    rows, product, rank = [list(row) for row in matrix], Fraction(1), 0
+def rank(matrix: Matrix) -> int:
+    """Return the rank."""
+    rows, found = [list(row) for row in matrix], 0
     for column in range(len(rows[0]) if rows else 0):
-        place = next((i for i in range(rank, len(rows)) if rows[i][column]), None)
-        if place is None:
-            continue
-        if place != rank:
-            rows[rank], rows[place], product = rows[place], rows[rank], -product
-        pivot = rows[rank][column]
-        product *= pivot
-        for i in range(rank + 1, len(rows)):
-            if factor := rows[i][column] / pivot:
-                rows[i] = [x - factor * y for x, y in zip(rows[i], rows[rank], strict=True)]
-        rank += 1
-    return rows, product, rank
-
-
-def determinant(matrix: Matrix) -> Fraction:
-    """Return det."""
-    _, product, rank = reduced(matrix)
-    return product if rank == len(matrix) else Fraction(0)
-
-
-def inverse_times(matrix: Matrix, right: Matrix) -> Matrix:
-    """Return matrix⁻¹ right; raises `ZeroDivisionError` for a singular matrix."""
-    n = len(matrix)
-    rows, _, rank = reduced([[*row, *more] for row, more in zip(matrix, right, strict=True)])
-    if rank < n or any(not rows[i][i] for i in range(n)):
-        raise ZeroDivisionError
-    found = zeros(n, len(right[0]))
-    for i in reversed(range(n)):
-        for j in range(len(right[0])):
-            known = sum((rows[i][k] * found[k][j] for k in range(i + 1, n)), Fraction(0))
-            found[i][j] = (rows[i][n + j] - known) / rows[i][i]
+        place = next((i for i in range(found, len(rows)) if rows[i][column]), None)
+        if place is not None:
+            rows[found], rows[place] = rows[place], rows[found]
+            for i in range(found + 1, len(rows)):
+                factor = rows[i][column] / rows[found][column]
+                rows[i] = [x - factor * y for x, y in zip(rows[i], rows[found], strict=True)]
+            found += 1
     return found
+
+
+def transfers(A: Matrix, B: Matrix, C: Matrix, D: Matrix) -> list[list[Ratio]]:
+    """Return C (sI − A)⁻¹ B + D."""
+    columns = [[[entry] for entry in column] for column in transpose(B)]
+    return [
+        [transfer(A, b, [c], [[d]]) for b, d in zip(columns, row, strict=True)] for c, row in zip(C, D, strict=True)
+    ]
 
 
 # -- claims -----------------------------------------------------------------------------------------------------------
@@ -252,13 +167,9 @@ def _placed(read: _Read, closed: Matrix, half: str, says: str) -> Iterator[tuple
     """Yield that the polynomial of a closed loop is the one asked for."""
     wanted = read.wanted(half)
     if wanted is not None:
-        yield says, read.same(wanted, lambda at: determinant(pencil(closed, at)), len(closed))
-    if isinstance(read.answer.get("polynomial"), str):
-        own = read.answer["polynomial"]
-        yield (
-            f"the polynomial is that of {says}",
-            read.same(own, lambda at: determinant(pencil(closed, at)), len(closed)),
-        )
+        yield says, read.function(wanted) == (faddeev_leverrier(closed)[0], ONE)
+    if isinstance(own := read.answer.get("polynomial"), str):
+        yield f"the polynomial is that of {says}", read.function(own) == (faddeev_leverrier(closed)[0], ONE)
 
 
 def _state_feedback(read: _Read) -> Iterator[tuple[str, bool]]:
@@ -277,11 +188,11 @@ def _integral_action(read: _Read) -> Iterator[tuple[str, bool]]:
     if K is None or k_I is None:
         return
     C, p = read.data("C"), len(k_I[0])
-    own = pencil(zeros(p, p), Fraction(1)) if read.given["discrete"] else zeros(p, p)
+    own = [[Fraction(int(i == j and read.given["discrete"])) for j in range(p)] for i in range(p)]
     A = [[*row, *zeros(1, p)[0]] for row in read.A]
-    A += [[*left, *right] for left, right in zip(minus(zeros(p, read.n), C), own, strict=True)]
-    B = [*read.data("B"), *minus(zeros(p, len(K)), read.data("D"))]
-    gain = [[*left, *right] for left, right in zip(K, minus(zeros(len(K), p), k_I), strict=True)]
+    A += [[*left, *right] for left, right in zip(negative(C), own, strict=True)]
+    B = [*read.data("B"), *negative(read.data("D"))]
+    gain = [[*left, *right] for left, right in zip(K, negative(k_I), strict=True)]
     closed = minus(A, times(B, gain))
     yield from _placed(read, closed, "control", "det(s*I - A_hat + B_hat*[K, -k_I]) = phi(s)")
     if read.answer.get("closed_loop_matrix") is not None:
@@ -301,61 +212,50 @@ def _observer(read: _Read) -> Iterator[tuple[str, bool]]:
 
 
 def _compensator(read: _Read) -> Iterator[tuple[str, bool]]:
-    K, L, F = read.answered("K"), read.answered("L"), read.answer.get("F")
-    if K is None or F is None:
+    K, L = read.answered("K"), read.answered("L")
+    if K is None or read.answer.get("F") is None:
         return
     B, C, D = read.data("B"), read.data("C"), read.data("D")
     yield from _placed(read, minus(read.A, times(B, K)), "control", "det(s*I - A + B*K) = phi_c(s)")
     if L is None or len(L) != read.n or read.given.get("observer") == "minimal":
         return
     yield from _placed(read, minus(read.A, times(L, C)), "observer", "det(s*I - A + L*C) = phi_o(s)")
-    own = plus(minus(minus(read.A, times(B, K)), times(L, C)), times(L, times(D, K)))
-    rows = [[F]] if isinstance(F, str) else F
-    for at in _places(2 * read.n + 1):
-        found = times(K, inverse_times(pencil(own, at), L))
-        printed = [[read.function(entry)(at) for entry in row] for row in rows]
-        yield "F = K*(s*I - A + B*K + L*C - L*D*K)**-1*L", printed == found
+    own = minus(minus(read.A, times(B, K)), times(L, minus(C, times(D, K))))
+    found = transfers(own, L, K, zeros(len(K), len(C)))
+    yield "F = K*(s*I - A + B*K + L*C - L*D*K)**-1*L", read.functions("F") == found
 
 
 def _ranks(letter: str) -> Callable[[_Read], Iterator[tuple[str, bool]]]:
     def claims(read: _Read) -> Iterator[tuple[str, bool]]:
         A, stacked = read.A, read.data(letter)
         if letter == "B":
-            A, stacked = _transposed(A), _transposed(stacked)
+            A, stacked = transpose(A), transpose(stacked)
         rows, block = [], stacked
         for _ in range(read.n):
             rows += block
             block = times(block, A)
-        whole = rows if letter == "C" else _transposed(rows)
+        whole = rows if letter == "C" else transpose(rows)
         yield f"the matrix of {letter}", read.answered("matrix") == whole
-        yield "the rank", reduced(rows)[2] == read.answer["rank"]
+        yield "the rank", rank(rows) == read.answer["rank"]
 
     return claims
 
 
-def _transposed(matrix: Matrix) -> Matrix:
-    return [list(column) for column in zip(*matrix, strict=True)]
-
-
 def _characteristic_polynomial(read: _Read) -> Iterator[tuple[str, bool]]:
     if "A" in read.given and isinstance(read.answer.get("polynomial"), str):
-        own = read.answer["polynomial"]
-        yield "det(s*I - A)", read.same(own, lambda at: determinant(pencil(read.A, at)), read.n)
+        yield "det(s*I - A)", read.function(read.answer["polynomial"]) == (faddeev_leverrier(read.A)[0], ONE)
 
 
 def _transfer_function(read: _Read) -> Iterator[tuple[str, bool]]:
-    G = read.answer["transfer_function"]
-    rows = [[G]] if isinstance(G, str) else G
-    for at in _places(2 * read.n + 1):
-        found = plus(times(read.data("C"), inverse_times(pencil(read.A, at), read.data("B"))), read.data("D"))
-        yield "C*(s*I - A)**-1*B + D", [[read.function(entry)(at) for entry in row] for row in rows] == found
+    found = transfers(read.A, read.data("B"), read.data("C"), read.data("D"))
+    yield "C*(s*I - A)**-1*B + D", read.functions("transfer_function") == found
 
 
 def _coordinates(read: _Read) -> Iterator[tuple[str, bool]]:
     T, A = read.answered("T"), read.answered("A")
     if T is None or A is None:
         return
-    yield "T is regular", determinant(T) != 0
+    yield "T is regular", rank(T) == read.n
     yield "T*A = A_bar*T", times(T, read.A) == times(A, T)
     if read.answer.get("B") is not None and "B" in read.given:
         yield "T*B = B_bar", times(T, read.data("B")) == read.answered("B")

@@ -67,14 +67,15 @@ _AT_POINTS = {"=", "!=="}
 
 @dataclass
 class Claim:
-    """A relation that must hold in an environment; `says` is its printed text."""
+    """A relation that must hold in an environment; `says` are words before it in its printed text."""
 
     relation: Relation
     environment: Environment
     says: str = ""
 
     def __str__(self) -> str:
-        return self.says or plain_relation(self.relation, self.environment.variable)
+        relation = plain_relation(self.relation, self.environment.variable)
+        return f"{self.says}: {relation}" if self.says else relation
 
 
 @dataclass
@@ -83,6 +84,9 @@ class Statement:
 
     says: str
     shown: Callable[[], str]
+
+    def __str__(self) -> str:
+        return self.says
 
 
 @dataclass

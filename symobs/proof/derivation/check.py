@@ -42,6 +42,7 @@ from symobs.proof.derivation.facts import (
     BUG,
     PREDICATES,
     are_roots,
+    difference_of,
     is_exactly,
     on_stratum,
     polynomial_of,
@@ -343,8 +344,7 @@ def with_domain(relation: Relation, environment: Environment) -> Environment:
 
 def _assume(relation: Relation, environment: Environment) -> Environment:
     """Let the factors of a difference, which there must be, be different from 0 from here on."""
-    left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
-    difference = (left - right).numerator
+    difference = difference_of(relation, environment).numerator
     if difference in Ideal.where(environment.relations):
         reject(plain_relation(relation, environment.variable))
     return replace(environment, nonzero=(*environment.nonzero, *(f for f, _ in difference.factors()[1])))

@@ -61,6 +61,8 @@ from symobs.formula.tree import (
 )
 from symobs.formula.tree.calculus import TIME
 from symobs.formula.tree.plain_text import plain
+from symobs.formula.tree.term import Term
+from symobs.formula.tree.written import written, written_relation
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import UNREADABLE, as_scalar, verify
 from symobs.proof.certificate.pointwise import Pointwise
@@ -98,6 +100,32 @@ class Said:
     def of(self, *kinds: type) -> list[Any]:
         """Return the facts and the slots of some kinds."""
         return [part for part in (*self.facts, *self.slots.values()) if isinstance(part, kinds)]
+
+    def holds(self, *texts: str, **slots: Any) -> bool:
+        """Return whether relations written as text hold where the sentence stands."""
+        return all(
+            _is_shown_true(written_relation(text, self.environment, **slots), self.environment) for text in texts
+        )
+
+    def stack(self, row: str, of: str) -> Term:
+        """Return the term of the observability matrix."""
+        return Term(_stack(row, of, self.environment), self.environment)
+
+    def told(self, slot: str) -> Term:
+        """Return the term in a slot; raises TypeError where there is none."""
+        found = self.slots[slot]
+        if not isinstance(found, Formula):
+            raise TypeError(slot)
+        return Term(found, self.environment)
+
+    def size(self, text: str) -> tuple[int, int]:
+        """Return the rows and columns of a term; raises TypeError where it stands for no matrix."""
+        return written(text, self.environment).value.shape  # type: ignore[no-any-return]
+
+
+def _is_shown_true(relation: Relation, environment: Environment) -> bool:
+    left, right = relation.members[0], relation.members[-1]
+    return (relation.operators == ("=",) and left == right) or verify(relation, environment)[0] != ""
 
 
 _PROPERTIES = (Predicate, HoldsExactlyWhere)
@@ -229,18 +257,15 @@ def _characteristic(of: str, environment: Environment) -> Formula:
     return Apply("det", Sum((unknown, Negative(_letter(of)))))
 
 
-def _is_part(here: Environment, row: str, of: str, N: str, X: str) -> bool:
+def _is_part(said: Said, row: str, of: str, N: str, X: str) -> bool:
     """Return whether the columns of N are independent, C N = 0 and A N = N X: they span unobservable states."""
-    basis = Letter(N)
-    moved, within = Product((_letter(of), basis)), Product((basis, Letter(X)))
-    independent = _holds(here, Apply("rank", basis), "=", _number(_sizes(N, here)[1]))
-    return independent and _vanishes(here, Product((_letter(row), basis))) and _holds(here, moved, "=", within)
+    return said.holds(f"rank({N}) = {said.size(N)[1]}", f"{row} {N} = 0", f"({of}) {N} = {N} {X}")
 
 
-def _is_whole(here: Environment, row: str, of: str, N: str, X: str) -> bool:
+def _is_whole(said: Said, row: str, of: str, N: str, X: str) -> bool:
     """Return whether the columns of N are a basis of the unobservable subspace, on which A is X."""
-    seen = _sizes(N, here)[0] - _sizes(N, here)[1]
-    return _is_part(here, row, of, N, X) and _holds(here, Apply("rank", _stack(row, of, here)), "=", _number(seen))
+    seen = said.size(N)[0] - said.size(N)[1]
+    return _is_part(said, row, of, N, X) and said.holds(f"rank({{stack}}) = {seen}", stack=said.stack(row, of))
 
 
 def _fixes(said: Said, row: str, of: str, N: str, X: str, phi: str) -> bool:
@@ -261,7 +286,7 @@ def _fixes(said: Said, row: str, of: str, N: str, X: str, phi: str) -> bool:
             return False
         wanted = rest.formula
     return (
-        _is_part(here, row, of, N, X)
+        _is_part(said, row, of, N, X)
         and all(_holds(here, polynomial, "=", fixed) for polynomial in told)
         and all(_holds(here, Product((subject, fixed)), "=", wanted) for subject in said.subjects())
     )
@@ -289,7 +314,7 @@ def _are_modes(said: Said, row: str, of: str, *letters_of: str) -> bool:
     here, told = said.environment, [roots.polynomial for roots in said.of(Roots)]
     return any(
         N in here.values
-        and _is_whole(here, row, of, N, X)
+        and _is_whole(said, row, of, N, X)
         and all(_holds(here, polynomial, "=", _characteristic(X, here)) for polynomial in told)
         for N, X in zip(letters_of[::2], letters_of[1::2], strict=True)
     )
@@ -297,17 +322,16 @@ def _are_modes(said: Said, row: str, of: str, *letters_of: str) -> bool:
 
 def _exhausts(said: Said, row: str, of: str, N: str, X: str, phi: str) -> bool:
     """Return whether φ is the polynomial of modes that no gain moves."""
-    here = said.environment
-    return _is_part(here, row, of, N, X) and _holds(here, Letter(phi), "=", _characteristic(X, here))
+    return _is_part(said, row, of, N, X) and said.holds(f"{phi} = det(pencil({X}))")
 
 
 def _are_seen(said: Said, row: str, of: str, N: str, X: str) -> bool:
     """Return whether a property is said of the polynomial of all observable modes."""
-    here, chi = said.environment, _characteristic(of, said.environment)
-    if N in here.values:
-        return _is_whole(here, row, of, N, X) and _are_about(said, Quotient(chi, _characteristic(X, here)))
-    full = _holds(here, Apply("rank", _stack(row, of, here)), "=", _number(_sizes(of, here)[0]))
-    return full and _are_about(said, chi)
+    if N in said.environment.values:
+        seen = written(f"det(pencil({of})) / det(pencil({X}))", said.environment).formula
+        return _is_whole(said, row, of, N, X) and _are_about(said, seen)
+    full = said.holds(f"rank({{stack}}) = {said.size(of)[0]}", stack=said.stack(row, of))
+    return full and _are_about(said, _characteristic(of, said.environment))
 
 
 def _are_stable(said: Said, row: str, of: str, N: str, X: str, mu: str) -> bool:
@@ -318,7 +342,7 @@ def _are_stable(said: Said, row: str, of: str, N: str, X: str, mu: str) -> bool:
     told = said.subjects("stable")
     stable = any(_holds(here, subject, "=", _characteristic(X, here)) for subject in told)
     weaker = _WEAKER in here.values and Letter(mu) in said.subjects("marginal")
-    return _is_whole(here, row, of, N, X) and (stable or (weaker and _is_bounded(said, X, mu)))
+    return _is_whole(said, row, of, N, X) and (stable or (weaker and _is_bounded(said, X, mu)))
 
 
 def _are_unstable(said: Said, row: str, of: str, N: str, X: str, mu: str) -> bool:
@@ -326,7 +350,7 @@ def _are_unstable(said: Said, row: str, of: str, N: str, X: str, mu: str) -> boo
     here, weaker = said.environment, _WEAKER in said.environment.values
     told = said.subjects("beyond" if weaker else "unstable")
     beyond = any(_holds(here, subject, "=", _characteristic(X, here)) for subject in told)
-    return _is_part(here, row, of, N, X) and (beyond or (weaker and _is_chained(said, X, mu)))
+    return _is_part(said, row, of, N, X) and (beyond or (weaker and _is_chained(said, X, mu)))
 
 
 def _is_bounded(said: Said, X: str, mu: str) -> bool:
@@ -393,9 +417,8 @@ def _vanishes_of(said: Said, *names: str) -> bool:
 
 def _annuls(said: Said, *names: str) -> bool:
     """Return whether a row times a matrix is 0, the row is not, nor is its product with the matrices that follow."""
-    here, (row, *others) = said.environment, map(_letter, names)
-    left = [Product((row, other)) for other in others[1:]]
-    return _vanishes(here, Product((row, others[0]))) and all(_differs(here, each) for each in (row, *left))
+    row, first, *others = names
+    return said.holds(f"{row} ({first}) = 0", f"{row} !== 0", *(f"{row} ({other}) !== 0" for other in others))
 
 
 def _is_lower_rank(said: Said, C: str, E: str) -> bool:
@@ -427,15 +450,14 @@ def _are_duals(said: Said, *pairs: str) -> bool:
 
 def _sums(said: Said, letter: str, count: int | None = None) -> bool:
     """Return whether a letter is Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, or that of the dual, over so many powers: all n where none is given."""
-    return any(_is_sum(said.environment, letter, row, of, count) for row, of in (("C", "A"), ("Bᵀ", "Aᵀ")))
+    return any(_is_sum(said, letter, row, of, count) for row, of in (("C", "A"), ("Bᵀ", "Aᵀ")))
 
 
-def _is_sum(here: Environment, letter: str, row: str, of: str, count: int | None = None) -> bool:
-    if not {letter, row.rstrip("ᵀ")} <= here.values.keys():
+def _is_sum(said: Said, letter: str, row: str, of: str, count: int | None = None) -> bool:
+    if not {letter, row.rstrip("ᵀ")} <= said.environment.values.keys():
         return False
-    A, C, order = _letter(of), _letter(row), _sizes(of, here)[0]
-    powers = [Product((C, Power(A, k))) if k else C for k in range(order if count is None else count)]
-    return _holds(here, Letter(letter), "=", Sum(tuple(Product((Transpose(power), power)) for power in powers)))
+    powers = [row, *(f"({row} {of}^{k})" for k in range(1, said.size(of)[0] if count is None else count))]
+    return said.holds(f"{letter} = " + " + ".join(f"{power}ᵀ {power}" for power in powers))
 
 
 def _shares_kernel(said: Said, row: str, of: str) -> bool:
@@ -443,32 +465,24 @@ def _shares_kernel(said: Said, row: str, of: str) -> bool:
 
     An integral over any time has it; a sum has it where it solves W − AᵀWA = CᵀC, and not over every number of steps.
     """
-    here, A, C, W = said.environment, _letter(of), _letter(row), Letter("W")
-    if not _is_sum(here, "M", row, of):
-        return False
-    moved = Sum((Product((Transpose(A), W, A)), Negative(W)))
-    return here.variable != "z" or _holds(here, moved, "=", Negative(Product((Transpose(C), C))))
+    is_sum = said.environment.variable == "z"
+    return _is_sum(said, "M", row, of) and (not is_sum or said.holds(f"{of}ᵀ W {of} - W = -({row}ᵀ {row})"))
 
 
 def _is_nonsingular(said: Said, letter: str) -> bool:
-    return _holds(said.environment, Apply("det", Letter(letter)), "!=", _number(0))
+    return said.holds(f"det({letter}) != 0")
 
 
 def _spans_kernel(said: Said) -> bool:
     """Return whether the columns of v (or N) are a basis of the kernel of W."""
-    here = said.environment
-    W, N = Letter("W"), Letter("v" if "v" in here.values else "N")
-    order, vectors = _sizes(N.name, here)
-    ranks = ((W, order - vectors), (N, vectors))
-    whole = all(_holds(here, Apply("rank", matrix), "=", _number(value)) for matrix, value in ranks)
-    return whole and _vanishes(here, Product((W, N)))
+    N = "v" if "v" in said.environment.values else "N"
+    order, vectors = said.size(N)
+    return said.holds(f"rank(W) = {order - vectors}", f"rank({N}) = {vectors}", f"W {N} = 0")
 
 
-def _left_side(here: Environment, of: Formula, P: Formula) -> Formula:
+def _left_side(said: Said, of: str, P: str) -> str:
     """Return AᵀP + PA, in discrete time AᵀPA − P."""
-    if here.variable == "z":
-        return Sum((Product((Transpose(of), P, of)), Negative(P)))
-    return Sum((Product((Transpose(of), P)), Product((P, of))))
+    return f"{of}ᵀ {P} {of} - {P}" if said.environment.variable == "z" else f"{of}ᵀ {P} + {P} {of}"
 
 
 def _reverses(here: Environment, letter: str, of: str) -> bool:
@@ -482,54 +496,40 @@ def _reverses(here: Environment, letter: str, of: str) -> bool:
 
 def _is_of_pairs(said: Said, of: str) -> bool:
     """Return whether what is told is det χ(−A), in discrete time det χ*(A)."""
-    here, A, told = said.environment, Letter(of), said.of(Relation)
-    image = Apply("chi_r_at", A) if here.variable == "z" else Apply("chi_at", Negative(A))
-    known = _holds(here, Letter("chi"), "=", _characteristic(of, here))
-    known = known and (here.variable != "z" or _reverses(here, "chi_r", "chi"))
-    return known and bool(told) and all(relation.members[0] == Apply("det", image) for relation in told)
+    discrete, told = said.environment.variable == "z", said.of(Relation)
+    image = written(f"det(chi_r_at({of}))" if discrete else f"det(chi_at(-{of}))", said.environment).formula
+    known = said.holds(f"chi = det(pencil({of}))") and (not discrete or _reverses(said.environment, "chi_r", "chi"))
+    return known and bool(told) and all(relation.members[0] == image for relation in told)
 
 
 def _solves_homogeneous(said: Said, of: str, N: str) -> bool:
     """Return whether a symmetric matrix other than 0 solves Lyapunov's equation with 0 on the right."""
-    here, matrix = said.environment, Letter(N)
-    symmetric = _holds(here, matrix, "=", Transpose(matrix))
-    return symmetric and _vanishes(here, _left_side(here, _letter(of), matrix)) and _differs(here, matrix)
+    return said.holds(f"{N} = {N}ᵀ", f"{_left_side(said, of, N)} = 0", f"{N} !== 0")
+
+
+def _trace(said: Said, left: str, right: str) -> Scalar:
+    """Return the trace of a product of two letters."""
+    pair = (written(text, said.environment).value.entries for text in (f"{left}ᵀ", right))
+    return sum((a * b for a, b in zip(*pair, strict=True)), Scalar.of(0))
 
 
 def _refutes_lyapunov(said: Said, of: str, Q: str, X: str) -> bool:
     """Return whether X, symmetric, solves the transposed homogeneous equation and the trace told is that of Q X, and not 0."""
-    here, matrix = said.environment, Letter(X)
-    right, left = (evaluate(Letter(name), here, Exact(here)) for name in (Q, X))
-    trace = Literal(sum((a * b for a, b in zip(right.entries, left.entries, strict=True)), Scalar.of(0)))
-    symmetric = all(_holds(here, Letter(name), "=", Transpose(Letter(name))) for name in (Q, X))
-    told = said.slots["trace"]
-    return (
-        symmetric
-        and isinstance(told, Formula)
-        and _vanishes(here, _left_side(here, Transpose(_letter(of)), matrix))
-        and _holds(here, told, "=", trace)
-        and _differs(here, trace)
-    )
+    adjoint = f"{of} {X} {of}ᵀ - {X} = 0" if said.environment.variable == "z" else f"{of} {X} + {X} {of}ᵀ = 0"
+    slots = {"told": said.told("trace"), "trace": _trace(said, Q, X)}
+    return said.holds(f"{Q} = {Q}ᵀ", f"{X} = {X}ᵀ", adjoint, "{told} = {trace}", "{trace} !== 0", **slots)
 
 
 def _refutes_regulator(said: Said, *disturbs: str) -> bool:
     """Return whether U A + V C = S U, U B + V D = 0, and what is told is tr UE − tr VQ (tr VQ where E is 0), and not 0."""
-    here, told = said.environment, said.slots["trace"]
-    U, V, A, B, C, D, S = (Letter(name) for name in ("U_r", "V_r", "A", "B", "C", "D", "S_w"))
-    if not isinstance(told, Formula) or (not disturbs and "E_d" in here.values and _differs(here, Letter("E_d"))):
+    known = said.environment.values
+    if not disturbs and "E_d" in known and said.holds("E_d !== 0"):
         return False
-    driven = (Product((U, B)), Product((V, D))) if "D" in here.values else (Product((U, B)),)
-    pairs = [("V_r", "Q_r", -1 if disturbs else 1), *(("U_r", name, 1) for name in disturbs)]
-    trace = Scalar.of(0)
-    for one, other, sign in pairs:
-        left, right = (evaluate(Letter(name), here, Exact(here)) for name in (one, other))
-        trace += sum((a * b for a, b in zip(left.T.entries, right.entries, strict=True)), Scalar.of(0)) * sign
-    return (
-        _holds(here, Sum((Product((U, A)), Product((V, C)))), "=", Product((S, U)))
-        and _vanishes(here, Sum(driven))
-        and _holds(here, told, "=", Literal(trace))
-        and _differs(here, Literal(trace))
-    )
+    trace = _trace(said, "V_r", "Q_r")
+    trace = _trace(said, "U_r", *disturbs) - trace if disturbs else trace
+    slots = {"told": said.told("trace"), "trace": trace}
+    driven = "U_r B + V_r D = 0" if "D" in known else "U_r B = 0"
+    return said.holds("U_r A + V_r C = S_w U_r", driven, "{told} = {trace}", "{trace} !== 0", **slots)
 
 
 def _is_blocked(said: Said, of: str, *, everywhere: bool) -> bool:
@@ -587,32 +587,26 @@ def _are_minors(said: Said, of: str) -> bool:
 
 def _is_lyapunov(said: Said, P: str, Q: str, of: str) -> bool:
     """Return whether P solves Lyapunov's equation, Q is said to be positive definite, and χ to be stable or not."""
-    here = said.environment
-    solves = _holds(here, _left_side(here, _letter(of), Letter(P)), "=", Negative(Letter(Q)))
-    known = _holds(here, Letter("chi"), "=", _characteristic(of, here))
     told = said.subjects("positive_definite"), said.subjects("stable", "unstable")
-    return solves and known and told == ([Letter(Q)], [Letter("chi")])
+    solves = said.holds(f"{_left_side(said, of, P)} = -{Q}", f"chi = det(pencil({of}))")
+    return solves and told == ([Letter(Q)], [Letter("chi")])
 
 
 def _is_optimal(said: Said, of: str, by: str, Q: str, R: str, N: str, P: str, K: str, chi: str) -> bool:
     """Return whether P solves Riccati's equation, weights have their signs, and χ, said to be stable, is of the loop with K."""
-    here, (a, b, q, r, n, p, k) = said.environment, map(_letter, (of, by, Q, R, N, P, K))
-    discrete, one = here.variable == "z", Identity(_sizes(P, here)[0])
-    pencil = Sum((Product((Letter("s"), one)), Negative(a)))
-    inner = Sum((r, Product((Transpose(b), p, b)))) if discrete else r
-    coupled = Sum((Product((Transpose(b), p, a)) if discrete else Product((Transpose(b), p)), Transpose(n)))
-    data = (evaluate(each, here, Exact(here)) for each in (a, b, q, r, n))
-    problem = Regulator(*data, discrete)  # type: ignore[call-arg]
+    here, discrete = said.environment, said.environment.variable == "z"
+    problem = Regulator(*(written(each, here).value for each in (of, by, Q, R, N)), discrete)  # type: ignore[call-arg]
     signs = {sign_of(c, here.signs) for c in (-problem.uncrossed[2]).characteristic_polynomial("s").coefficients("s")}
     definite = all(sign_of(minor, here.signs) == "positive" for minor in leading_minors(problem.R))
-    solves = _holds(here, Sum((_left_side(here, a, p), q)), "=", Product((Transpose(k), inner, k)))
+    inner = f"({R} + {by}ᵀ {P} {by})" if discrete else R
+    coupled = f"{by}ᵀ {P} {of} + {N}ᵀ" if discrete else f"{by}ᵀ {P} + {N}ᵀ"
+    solves = said.holds(f"{_left_side(said, of, P)} + {Q} = {K}ᵀ {inner} {K}", f"{P} = {P}ᵀ")
     loops = (
-        _holds(here, Product((inner, gain)), "=", coupled)
-        and _holds(here, Letter(chi), "=", Apply("det", Sum((pencil, Product((b, gain))))))
-        for gain in (k, Negative(k))  # minus the gain in the signs of some conventions: the result holds its own letter
+        said.holds(f"{inner} {gain} = {coupled}", f"{chi} = det(pencil({of}) + {by} {gain})")
+        for gain in (K, f"(-{K})")  # minus the gain in the signs of some conventions: the result holds its own letter
     )
     known = definite and signs <= {"positive", "nonnegative", "zero"} and said.subjects("stable") == [Letter(chi)]
-    return known and solves and _holds(here, p, "=", Transpose(p)) and any(loops)
+    return known and solves and any(loops)
 
 
 def _encloses(said: Said, *names: str) -> bool:
@@ -659,7 +653,7 @@ def _is_on_boundary(said: Said, row: str, of: str, N: str, X: str) -> bool:
     here, v = said.environment, said.environment.variable
     factors = as_scalar(evaluate(_characteristic(X, here), here, Exact(here))).numerator.factors()[1]
     on = [on_boundary(factor, v, here.signs, discrete=v == "z") for factor, _ in factors if factor.degree(v)]
-    return _is_part(here, row, of, N, X) and bool(on) and all(on)
+    return _is_part(said, row, of, N, X) and bool(on) and all(on)
 
 
 def _has_rank(said: Said, *, is_full: bool) -> bool:
@@ -701,7 +695,7 @@ def _is_exact(said: Said, row: str, of: str, N: str, X: str) -> bool:
     here = said.environment
     fixed = _characteristic(X, here)
     found = [fact.property.subject for fact in here.shown if isinstance(fact, HoldsExactlyWhere)]
-    return bool(found) and _is_whole(here, row, of, N, X) and all(_holds(here, each, "=", fixed) for each in found)
+    return bool(found) and _is_whole(said, row, of, N, X) and all(_holds(here, each, "=", fixed) for each in found)
 
 
 def _has_freedom(said: Said, row: str, of: str) -> int:

@@ -51,7 +51,7 @@ def equality(left: Member, right: Member, environment: Environment, says: str = 
 
 
 def holds(environment: Environment, text: str, says: str = "", **slots: Any) -> Claim:
-    """Return the claim that a relation written as text holds; `says` is what a certificate prints instead."""
+    """Return the claim that a relation written as text holds; `says` are words before it."""
     return Claim(written_relation(text, environment, **slots), environment, says)
 
 

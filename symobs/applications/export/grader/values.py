@@ -36,6 +36,10 @@ class UnreadableError(Exception):
     """A text that is no value, and why."""
 
 
+class VanishingError(UnreadableError):
+    """A division by zero."""
+
+
 # -- polynomials: coefficients from the lowest power, without zeros behind the last; the zero polynomial is empty --------
 
 
@@ -80,7 +84,7 @@ def divided(p: Poly, q: Poly) -> tuple[Poly, Poly]:
 def divided_by(above: Poly, below: Poly = ONE) -> Ratio:
     """Return a rational function in lowest terms, its denominator monic."""
     if not below:
-        raise UnreadableError("a division by zero")
+        raise VanishingError("a division by zero")
     p, q = above, below
     while q:
         p, q = q, divided(p, q)[1]

@@ -98,18 +98,18 @@ class LyapunovSolution(PutAgain):
         yield holds(e, "Q = Q.T")
         yield holds(e, "det(image) = determinant", "determinant of the image of A")
         if not determinant.is_zero:
-            yield holds(e, "determinant !== 0", "the determinant is not 0")
+            yield holds(e, "determinant !== 0")
         if X is not None:
             yield holds(e, f"{self.transposed} = 0")
             yield holds(e, "X = X.T")
-            yield holds(e, "{trace} !== 0", "trace of Q*X is not 0", trace=self.obstacle)
+            yield holds(e, "{trace} !== 0", trace=self.obstacle)
             return
         yield holds(e, f"{self.left} = -Q")
         yield holds(e, "P = P.T")
         if N is not None:
             yield holds(e, f"{self.left.replace('P', 'N')} = 0")
             yield holds(e, "N = N.T")
-            yield holds(e, "N !== 0", "N is not 0")
+            yield holds(e, "N !== 0")
         yield from self._about_minors(e)
 
     @property

@@ -278,7 +278,7 @@ class ModeResult(Result):
         chi = e["chi"]
         yield equality(e["A"].pencil.apply("det"), chi, e)
         form = Factored(Scalar.of(1), tuple((part.factor, part.power) for part in self.spectrum))
-        yield equality(chi, Term(formula_of_factored(form), e), e, "chi = product of the factors")
+        yield equality(chi, Term(formula_of_factored(form), e), e)
         counts = len(self.answer["ranks"]), len(self.answer["constancy"])
         yield Claim(relation(*counts, len(self.spectrum)), e, "one rank for each factor")
         for part, found, where in self.parts:
@@ -286,7 +286,7 @@ class ModeResult(Result):
             if where is not None:
                 yield from constancy_claims(where, X, part.factor, order - found, self.plant)
         fixed = e["X"].pencil.apply("det") if X.shape[0] else Term(Literal(Scalar.of(1)), e)
-        yield equality(fixed, self.answer["fixed_polynomial"], e, "det(s*I - X) = fixed_polynomial")
+        yield equality(fixed, self.answer["fixed_polynomial"], e)
 
     def _rank_claims(self, part: Eigenvalues, found: int, e: Environment) -> Iterator[Claim]:
         order, where = self.plant.order, f"{part.relation} = 0"
@@ -314,7 +314,7 @@ class ModeResult(Result):
         M = inner["M"]
         C = self.test.pair(self.plant)[1]
         pencil = [[inner["A"] - identity(order, inner) * part.value], [Term(Literal(C), inner)]]
-        yield equality(M, block(pencil), inner, f"M = [A - lambda*I; C] where {where}")
+        yield equality(M, block(pencil), inner, f"where {where}")
         yield Claim(
             relation(found, len(rows), len(columns)), inner, f"the minor has the order of the rank where {where}"
         )
@@ -327,7 +327,7 @@ class ModeResult(Result):
             yield Claim(relation(minor, operator, 0), inner, f"a minor of M is not zero where {where}")
         if kernel.shape[1]:
             N = Term(Literal(kernel), inner)
-            yield equality(M @ N, Matrix.zeros(part.matrix.shape[0], kernel.shape[1]), inner, f"M*N = 0 where {where}")
+            yield equality(M @ N, Matrix.zeros(part.matrix.shape[0], kernel.shape[1]), inner, f"where {where}")
             minor = Term(Literal(kernel.select(free, range(kernel.shape[1]))), inner).apply("det")
             yield Claim(relation(minor, operator, 0), inner, f"rank N = n - rank M where {where}")
 

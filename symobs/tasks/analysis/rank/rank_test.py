@@ -202,9 +202,9 @@ def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | No
     yield Claim(relation(order - found["rank"], *beside), e, "the kernel has the dimension n - rank")
     if N.shape[1]:
         e, count = here or e, range(N.shape[1])
-        yield equality(e["O"] @ e["N"], Matrix.zeros(O.shape[0], len(count)), e, "M*N = 0")
-        yield Claim(relation(determinant_term(N.select(found["free"], count), e), "!==", 0), e, "rank N = n - rank M")
-        yield equality(e["A"] @ e["N"], e["N"] @ e["X"], e, "A*N = N*X")
+        yield equality(e["O"] @ e["N"], Matrix.zeros(O.shape[0], len(count)), e)
+        yield Claim(relation(determinant_term(N.select(found["free"], count), e), "!==", 0), e)
+        yield equality(e["A"] @ e["N"], e["N"] @ e["X"], e)
 
 
 def rank_losses(found: Mapping[str, Any], signs: Mapping[str, str]) -> tuple[Scalar, ...]:

@@ -137,7 +137,7 @@ class CanonicalForm(Result):
             product = Scalar.of(1)
             for factor, length in self.answer["blocks"]:
                 product = product * factor**length
-            yield equality(e["chi"], product, e, "chi = product of the polynomials of the blocks")
+            yield equality(e["chi"], product, e)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:

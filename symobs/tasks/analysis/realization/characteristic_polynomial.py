@@ -38,7 +38,7 @@ class CharacteristicPolynomial(Result):
         form: Factored = self.answer["factors"]
         product = Term(formula_of_factored(form), e)
         yield equality(pencil.apply("det"), e["chi"], e)
-        yield equality(e["chi"], product, e, "chi = product of the factors")
+        yield equality(e["chi"], product, e)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

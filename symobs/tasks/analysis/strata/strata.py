@@ -217,14 +217,14 @@ def stratum_claims(stratum: RankStratum, region: Region) -> Iterator[Claim]:
             continue
         e = Environment(relations=outside([*distances, *region.nonzero]), signs=region.signs)
         both = Matrix.column([*equations, value])
-        yield _never_zero(both, e, f"where {_listed(equations)}, {value} vanishes in further cases only")
+        yield _never_zero(both, e, f"in further cases only where {_listed(equations)}")
     inside = Environment(relations=outside([*excluded, *region.nonzero], equations), signs=region.signs)
     for name, value in (stratum.substitution or {}).items():
         if not value.denominator.is_constant:
             below = Matrix.column([value.denominator])
-            yield _never_zero(below, inside, f"where {_listed(equations)}, {value.denominator} does not vanish")
+            yield _never_zero(below, inside, f"where {_listed(equations)}")
         solved = relation(Scalar.symbol(name) * value.denominator, value.numerator)
-        yield Claim(solved, inside, f"where {_listed(equations)}, {name} = {value}")
+        yield Claim(solved, inside, f"where {_listed(equations)}")
 
 
 def _never_zero(values: Matrix, e: Environment, says: str) -> Claim:

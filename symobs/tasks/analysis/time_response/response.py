@@ -296,9 +296,8 @@ class Response(DampingCases):
     answered_by = ("state",)
     functions_of_time = {"x": "state", "x(t)": "state", "y": "output", "y(t)": "output"}
     letters = {"state": "x_t", "output": "y_t"}
-    #: The letter of time, and how certificates write the equation of motion.
+    #: The letter of time.
     clock: ClassVar[str] = "t"
-    law: ClassVar[str] = "x' = A*x + B*u"
     main: ClassVar[str] = "state"
     asked_for: ClassVar[tuple[str, ...]] = ("initial", "input", "impulse")
 
@@ -354,14 +353,14 @@ class Response(DampingCases):
         if "exp_At" in values:
             yield from exponential_claims(e)
         if "x_f" in values:
-            yield holds(e, "x_t = exp_At x_0 + x_f", "x = exp(A*t)*x0 + x_f")
-        yield holds(e, f"{{rate}} = {self.moved}", self.law, rate=self.rate(e))
-        yield holds(e, "{begun} = x_0", "x(0) = x0", begun=e[f"x_{k}"].at(k, 0))
+            yield holds(e, "x_t = exp_At x_0 + x_f")
+        yield holds(e, f"{{rate}} = {self.moved}", rate=self.rate(e))
+        yield holds(e, "{begun} = x_0", begun=e[f"x_{k}"].at(k, 0))
         if k == "t":
             begun = _begun(self, e, leave_out_rest=False)
             yield holds(e, "x_0 = {begun}", "x0 is the initial state and what the impulse adds", begun=begun)
         if answer["output"] is not None:
-            yield holds(e, f"y_{k} = {self.seen}", "y = C*x + D*u")
+            yield holds(e, f"y_{k} = {self.seen}")
 
     def rate(self, e: Environment) -> Term:
         """Return x′."""
@@ -575,7 +574,6 @@ class ResponseInSteps(Response):
     functions_of_time = {"x": "state", "x(k)": "state", "y": "output", "y(k)": "output"}
     letters = {"state": "x_k", "output": "y_k"}
     clock = "k"
-    law = "x(k + 1) = A*x(k) + B*u(k)"
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:

@@ -141,7 +141,7 @@ class TimeVaryingObservability(Result):
             row = e[f"N_{k}"]
             yield equality(e[f"N_{k + 1}"], row @ e["A"] + row.derivative, e)
         stacked = block([[e[f"N_{k}"]] for k in range(order)])
-        yield equality(e["O"], stacked, e, "O = [N_0; N_1; ...]")
+        yield equality(e["O"], stacked, e)
         yield from self._rank_claims(e)
         if answer["transition_matrix"] is not None:
             yield from self._transition_claims(e)
@@ -165,11 +165,9 @@ class TimeVaryingObservability(Result):
                 yield Claim(relation(instant, "!=", 0), e, f"it is not 0 at t = {answer['point']}")
         if hidden:
             A, C, states, X = (e[name] for name in ("A", "C", "V", "X"))
-            yield equality(C @ states, Matrix.zeros(self.plant.outputs, hidden), e, "C*V = 0")
-            yield equality(A @ states - states.derivative, states @ X, e, "A*V - V' = V*X")
-            yield Claim(
-                relation(determinant_term(V.select(answer["free"], range(hidden)), e), "!==", 0), e, "rank V = n - rank"
-            )
+            yield equality(C @ states, Matrix.zeros(self.plant.outputs, hidden), e)
+            yield equality(A @ states - states.derivative, states @ X, e)
+            yield Claim(relation(determinant_term(V.select(answer["free"], range(hidden)), e), "!==", 0), e)
 
     def _inside_claims(self, e: Environment) -> Iterator[Claim]:
         """Yield that the instant which shows the rank is one of the interval."""
@@ -183,8 +181,8 @@ class TimeVaryingObservability(Result):
     def _transition_claims(self, e: Environment) -> Iterator[Claim]:
         answer, order, asked = self.answer, self.plant.order, self.asked_for
         Phi = e["Phi"]
-        yield equality(Phi.derivative, e["A"] @ Phi, e, "d/dt Phi(t, t0) = A*Phi(t, t0)")
-        yield equality(Phi.at(TIME, Scalar.symbol(START)), identity(order, e), e, "Phi(t0, t0) = I")
+        yield equality(Phi.derivative, e["A"] @ Phi, e)
+        yield equality(Phi.at(TIME, Scalar.symbol(START)), identity(order, e), e)
         seen = e["C"] @ Phi.at(START, asked.start)
         hidden = order - answer["rank"]
         if answer["kernel"] is None and _has_value(answer["transition_matrix"], asked.start):
@@ -193,13 +191,13 @@ class TimeVaryingObservability(Result):
             yield equality(answer["kernel"].shape[1], hidden, e, "there are n - rank vectors v")
         if answer["kernel"] is not None and hidden:
             v = e["v"]
-            yield equality(v.derivative, Matrix.zeros(order, hidden), e, "v does not depend on t")
-            yield equality(seen @ v, Matrix.zeros(self.plant.outputs, hidden), e, "C*Phi*v = 0")
+            yield equality(v.derivative, Matrix.zeros(order, hidden), e)
+            yield equality(seen @ v, Matrix.zeros(self.plant.outputs, hidden), e)
             yield Claim(relation((v.T @ v).apply("det"), "!==", 0), e, "the vectors v are independent")
         if answer["gramian_in_time"] is not None:
             G = e["G"]
-            yield equality(G.derivative, seen.T @ seen, e, "G' = Phi.T*C.T*C*Phi")
-            yield equality(G.at(TIME, asked.start), Matrix.zeros(order, order), e, "G(start) = 0")
+            yield equality(G.derivative, seen.T @ seen, e)
+            yield equality(G.at(TIME, asked.start), Matrix.zeros(order, order), e)
             yield equality(answer["gramian"], G.at(TIME, asked.end), e, "the Gramian is G(end)")
 
     def _state_claims(self, e: Environment) -> Iterator[Claim]:
@@ -207,16 +205,16 @@ class TimeVaryingObservability(Result):
         f, rate = e["f"], e["A"] @ e["f"]
         if "u" in e.values:
             rate = rate + e["B"] @ e["u"]
-        yield equality(f.derivative, rate, e, "f' = A*f + B*u")
-        yield equality(f.at(TIME, start), Matrix.zeros(self.plant.order, 1), e, "f(start) = 0")
+        yield equality(f.derivative, rate, e)
+        yield equality(f.at(TIME, start), Matrix.zeros(self.plant.order, 1), e)
         if self.answer["x0"] is None:
             yield from self._refusal_claims(e)
         else:
             state = e["Phi"].at(START, start) @ e["x_0"] + f
             seen = e["C"] @ state
             seen = seen + e["D"] @ e["u"] if "u" in e.values and m.has_feedthrough else seen
-            yield equality(e["x_0"].derivative, Matrix.zeros(self.plant.order, 1), e, "x0 is constant")
-            yield equality(seen, e["y"], e, "C*(Phi*x0 + f) + D*u = y")
+            yield equality(e["x_0"].derivative, Matrix.zeros(self.plant.order, 1), e)
+            yield equality(seen, e["y"], e)
 
     def _refusal_claims(self, e: Environment) -> Iterator[Claim]:
         """Yield W x = ∫ Φᵀ Cᵀ ξ, which has one solution, for a state x whose output is another one."""
@@ -229,9 +227,9 @@ class TimeVaryingObservability(Result):
         state = Term(Literal(answer["candidate"]), e)
         limits = (TIME, asked.start, asked.end)
         whole = Term(Integral((seen.T @ xi).formula, Literal(answer["moment"]), *limits), e)
-        yield Claim(relation(Term(Literal(W), e).apply("det"), "!==", 0), e, "det W is not 0")
-        yield equality(Term(Literal(W), e) @ state, whole, e, "W*x = integral of Phi.T*C.T*(y - C*f - D*u)")
-        yield equality(state.derivative, Matrix.zeros(self.plant.order, 1), e, "x is constant")
+        yield Claim(relation(Term(Literal(W), e).apply("det"), "!==", 0), e)
+        yield equality(Term(Literal(W), e) @ state, whole, e)
+        yield equality(state.derivative, Matrix.zeros(self.plant.order, 1), e)
         yield Claim(relation(xi, "!==", seen @ state), e, "the output of x is not the one measured")
 
     # -- what follows ------------------------------------------------------------------------------------------------

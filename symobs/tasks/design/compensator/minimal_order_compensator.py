@@ -80,10 +80,10 @@ class MinimalOrderCompensator(OutputFeedback):
         direct, rest = split(self.answer["K"], self.estimator)
         e = e.extended_by(values={"N": direct, "K_2": rest})
         K, M, N, K_2, D, F = (e[name] for name in ("K", "M_z", "N", "K_2", "D", "F"))
-        yield equality(K @ M, block([[N, K_2]]), e, "K*M = [N, K_2]")
+        yield equality(K @ M, block([[N, K_2]]), e)
         one = identity(self.plant.inputs, e)
         if not self.exists:
-            yield equality((one - N @ D).apply("det"), 0, e, "det(I - N*D) = 0")
+            yield equality((one - N @ D).apply("det"), 0, e)
             return
         F_z, G, H = (e[name] for name in ("F_z", "G_z", "H_z"))
         resolvent = F_z.pencil.inverse

@@ -118,11 +118,11 @@ class DisturbanceObserver(Result):
         yield equality(e["phi"], self.desired.polynomial, e, "the polynomial is the one asked for")
         if L_x is not None:
             both = block([[e["L_x"]], [e["L_w"]]])
-            yield equality(both, self.inner.answer["L"], e, "[L_x; L_w] = L")
+            yield equality(both, self.inner.answer["L"], e)
             seen = block([[e["L_x"] @ e["C"]], [e["L_w"] @ e["C"]]])
             wide = Matrix.block([[Matrix.identity(plant.order), Matrix.zeros(plant.order, self.exosystem.order)]])
             pencil = whole.pencil + seen @ Term(Literal(wide), e)
-            yield equality(pencil.apply("det"), e["phi"], e, "det(s*I - A_hat + L*C_hat) = phi")
+            yield equality(pencil.apply("det"), e["phi"], e)
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:

@@ -30,14 +30,14 @@ def unassignable_claims(pair: ObserverPair, polynomial: Scalar) -> Iterator[Clai
     e = Environment(variable=pair.variable, values=values)
     A, C, kernel, restricted = (e[name] for name in ("A", "C", "N", "X"))
     pencil = restricted.pencil
-    yield equality(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1]), e, "C*N = 0")
-    yield equality(A @ kernel, kernel @ restricted, e, "A*N = N*X")
+    yield equality(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1]), e)
+    yield equality(A @ kernel, kernel @ restricted, e)
     yield Claim(relation(N.shape[1], X.shape[0], "!==", 0), e, "X has the order of the kernel")
     yield _of_full_rank(pair, e)
-    yield equality(pencil.apply("det"), pair.fixed_polynomial, e, "det(s*I - X) = fixed polynomial")
+    yield equality(pencil.apply("det"), pair.fixed_polynomial, e)
     phi = e["phi"]
-    yield equality(phi, pair.fixed_polynomial * quotient + rest, e, "phi = fixed polynomial * q + r")
-    yield Claim(relation(Term(Literal(rest), e), "!==", 0), e, "r is not zero")
+    yield equality(phi, pair.fixed_polynomial * quotient + rest, e)
+    yield Claim(relation(Term(Literal(rest), e), "!==", 0), e)
 
 
 def claims_of_kernel_family(
@@ -82,7 +82,7 @@ def excluded_claims(
         says = f"with zeros there, {value} lies in the ideal of the coefficients of det(s*I - A + L*C) - phi(s)"
         yield equality(value, 0, e, says if letter_of_gain == "L" else says.replace("L*C", "B*K"))
         if not value.is_constant:
-            yield Claim(relation(value, "!==", 0), Environment(variable=pair.variable), f"{value} is not 0")
+            yield Claim(relation(value, "!==", 0), Environment(variable=pair.variable))
 
 
 def has_real_root(found: RootGain, e: Environment) -> Claim:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Factored, Matrix, RealNumber, Scalar, transfer
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
+from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
 from symobs.formula.tree import Decimals, Environment
 from symobs.formula.tree.term import Term, identity
 from symobs.ground.dataclass import dataclass
@@ -118,11 +119,10 @@ class Margins(Result):
             yield equality(closed, _plain(self.design.fields[_LOOPS[self.design.task][0]]), e, "P + N of the design")
         else:
             A, B, C, D, F = (e[name] for name in "ABCDF")
-            yield equality(e["chi_o"], whole @ e["q"], e, "P = det(s*I - A) times that of F")
+            yield equality(e["chi_o"], whole @ e["q"], e)
             G = C @ A.pencil.inverse @ B + D
             one = identity(1, e)
-            said = "P + N = P*(1 + F*G)"
-            yield equality(e["chi_cl"] @ one, e["chi_o"] @ (one + F @ G), e, said)
+            yield equality(e["chi_cl"] @ one, e["chi_o"] @ (one + F @ G), e)
         if answer["slowest"] is not None:
             yield Statement("the slowest root", lambda: "exact" if self._slowest == answer["slowest"] else "")
         if answer["modulus"] is not None:
@@ -232,6 +232,23 @@ def loop_of(design: Any) -> tuple[Scalar, Scalar]:
     return _plain(fields[name]), opened
 
 
+def in_digits(design: Any) -> Any:
+    """Return a design of numbers with its irrational data and gains rounded; itself where it is rational, or has letters."""
+    fields = design.numbers
+    gains = {letter: matrix_in_digits(fields[letter]) for letter in "KL" if fields.get(letter) is not None}
+    if None in gains.values() or all(gains[letter] == design.answer.get(letter) for letter in gains):
+        return design
+    plant = design.plant.in_digits().with_rounding()
+    if design.task != "compensator":
+        kind: Any = StateFeedbackDesign if "K" in gains else ObserverDesign
+        return kind.of_given(plant, *gains.values())
+    observer, nothing = "minimal" if design.has_reduced_observer else "full", (None, None)
+    given_gains = gains["K"], gains["L"]
+    return observer_based(
+        plant, task="margins", control=nothing, estimate=nothing, observer=observer, gains=given_gains
+    )
+
+
 def _not_proper(where: str, repair: str) -> InputError:
     message = "the loop has a gain at infinity: neither the plant nor the compensator is strictly proper"
     return InputError(message, where=where, repair=repair)
@@ -314,10 +331,11 @@ def margins(
         for name, value in asked.items():
             reject_both("controller", controller, value, None, other=name)
         plant.require("B", "C", task="margins")
+        plant = plant.in_digits()
         written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
         found: Result = chosen.solve(plant, None, written, _loop_of_controller(plant, written))
         return found.asked(method)
-    design = _design(plant.knowing(*asked.values()), asked, observer)
+    design = in_digits(_design(plant.knowing(*asked.values()), asked, observer))
     loop = None if design.verdict == "no" else loop_of(design)
     found = chosen.solve(design.plant, design, None, loop)
     return found.asked(method)

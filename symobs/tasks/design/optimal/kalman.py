@@ -8,18 +8,17 @@ from symobs.exact import Matrix
 from symobs.exact.floating.riccati_check import Regulator
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import ShapeMismatch
-from symobs.proof.derivation.builder import relation
 from symobs.system import read_matrix
 from symobs.system.specification import from_list
+from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.optimal.optimal_gain import OptimalGain, design_optimal
 from symobs.tasks.design.optimal.optimal_page import write_optimal
 from symobs.tasks.result import Result, method, page_of, task
+from symobs.tasks.result.control_systems import Controller, observer_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
-    from symobs.formula.tree import Relation
-    from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
     from symobs.system.conditions import Condition
     from symobs.system.specification import Intensity, MatrixText, Name
@@ -35,6 +34,8 @@ class OptimalFilter(OptimalGain):
     letters = {"L": "L", "P": "P_x", "polynomial": "chi_L", "poles": "chi_L"}
     cards = ("L", "P", "polynomial")
     letter: ClassVar[str] = "L"
+    design_kind = ObserverDesign
+    of_loop = ("A", "B_u", "B_y")
 
     @staticmethod
     def regulator_of(plant: StateSpace, weights: Mapping[str, Matrix]) -> Regulator:
@@ -44,24 +45,16 @@ class OptimalFilter(OptimalGain):
         return Regulator(m.A.T, m.C.T, (G @ weights["W"] @ G.T).normal(), weights["V"], nothing, plant.is_discrete)
 
     @staticmethod
-    def equations(
-        of: Callable[[str], Term],
-        *,
-        discrete: bool,
-        cross: bool = True,  # noqa: ARG004 - of the regulator
-    ) -> tuple[tuple[Relation, str], ...]:
+    def equations(*, discrete: bool, cross: bool = True) -> tuple[str, str]:  # noqa: ARG004 - of the regulator
         """Return Riccati's equation and that of L."""
-        A, C, V, L, P, noise = *map(of, ("A", "C", "V", "L", "P")), of("noise")
         if discrete:
-            inner = V + C @ P @ C.T
-            return (
-                (relation(A @ P @ A.T - P + noise, L @ inner @ L.T), "A*P*A.T - P + G*W*G.T = L*(V + C*P*C.T)*L.T"),
-                (relation(L @ inner, A @ P @ C.T), "L*(V + C*P*C.T) = A*P*C.T"),
-            )
-        return (
-            (relation(A @ P + P @ A.T + noise, L @ V @ L.T), "A*P + P*A.T + G*W*G.T = L*V*L.T"),
-            (relation(L @ V, P @ C.T), "L*V = P*C.T"),
-        )
+            return "A*P*A.T - P + noise = L*(V + C*P*C.T)*L.T", "L*(V + C*P*C.T) = A*P*C.T"
+        return "A*P + P*A.T + noise = L*V*L.T", "L*V = P*C.T"
+
+    @property
+    def controller(self) -> Controller | None:
+        """(u, y) → x̂."""
+        return observer_of(self)
 
 
 page_of(OptimalFilter)(write_optimal)

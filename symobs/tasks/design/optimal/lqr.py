@@ -7,17 +7,15 @@ from typing import TYPE_CHECKING, ClassVar
 from symobs.exact import Matrix
 from symobs.exact.floating.riccati_check import Regulator
 from symobs.ground.dataclass import dataclass
-from symobs.proof.derivation.builder import relation
 from symobs.system.specification import read_gain
+from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.optimal.optimal_gain import OptimalGain, design_optimal
 from symobs.tasks.design.optimal.optimal_page import write_optimal
 from symobs.tasks.result import Result, method, page_of, task
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping
 
-    from symobs.formula.tree import Relation
-    from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
     from symobs.system.conditions import Condition
     from symobs.system.specification import Intensity, MatrixText, Name
@@ -33,6 +31,8 @@ class OptimalFeedback(OptimalGain):
     letters = {"K": "K", "P": "P_x", "polynomial": "chi_K", "poles": "chi_K"}
     cards = ("K", "P", "polynomial")
     letter: ClassVar[str] = "K"
+    design_kind = StateFeedbackDesign
+    of_loop = ("closed_loop_matrix",)
 
     @staticmethod
     def regulator_of(plant: StateSpace, weights: Mapping[str, Matrix]) -> Regulator:
@@ -41,21 +41,12 @@ class OptimalFeedback(OptimalGain):
         return Regulator(m.A, m.B, weights["Q"], weights["R"], weights["N"], plant.is_discrete)
 
     @staticmethod
-    def equations(of: Callable[[str], Term], *, discrete: bool, cross: bool = True) -> tuple[tuple[Relation, str], ...]:
+    def equations(*, discrete: bool, cross: bool = True) -> tuple[str, str]:
         """Return Riccati's equation and that of K."""
-        A, B, Q, R, K, P = map(of, ("A", "B", "Q", "R", "K", "P"))
-        coupled = B.T @ P @ A if discrete else B.T @ P
-        coupled = coupled + of("N").T if cross else coupled
+        coupled = ("B.T*P*A" if discrete else "B.T*P") + (" + N.T" if cross else "")
         if discrete:
-            inner = R + B.T @ P @ B
-            return (
-                (relation(A.T @ P @ A - P + Q, K.T @ inner @ K), "A.T*P*A - P + Q = K.T*(R + B.T*P*B)*K"),
-                (relation(inner @ K, coupled), "(R + B.T*P*B)*K = B.T*P*A + N.T"),
-            )
-        return (
-            (relation(A.T @ P + P @ A + Q, K.T @ R @ K), "A.T*P + P*A + Q = K.T*R*K"),
-            (relation(R @ K, coupled), "R*K = B.T*P + N.T"),
-        )
+            return "A.T*P*A - P + Q = K.T*(R + B.T*P*B)*K", f"(R + B.T*P*B)*K = {coupled}"
+        return "A.T*P + P*A + Q = K.T*R*K", f"R*K = {coupled}"
 
 
 page_of(OptimalFeedback)(write_optimal)

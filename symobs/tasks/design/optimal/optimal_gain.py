@@ -42,17 +42,18 @@ from symobs.system.specification import over_common_data, read_symmetric
 from symobs.tasks.analysis.modes.modes import polynomial_of
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stable_factors, with_signs
-from symobs.tasks.result import Case, Result, choose, equality
+from symobs.tasks.result import Case, Result, choose, equality, holds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from symobs.exact.floating.riccati import Enclosure
     from symobs.exact.floating.riccati_check import Regulator
-    from symobs.formula.tree import Relation
+    from symobs.exact.linear_algebra.transfer_function import Realisation
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
     from symobs.tasks.analysis.strata.strata import Place
+    from symobs.tasks.design.gain.gain_design import GainDesign
 
 #: With more states the proof of the digits takes seconds; with parameters no square roots write the factor in general.
 MOST_STATES, MOST_WITH_PARAMETERS = 12, 2
@@ -80,6 +81,9 @@ class OptimalGain(Result):
     needed: tuple[Condition, ...] = ()
 
     letter: ClassVar[str]
+    design_kind: ClassVar[type[GainDesign]]
+    #: What stands beside the gain among the answers.
+    of_loop: ClassVar[tuple[str, ...]]
     panels = ("plane",)
 
     @staticmethod
@@ -98,8 +102,8 @@ class OptimalGain(Result):
         return of("A") - (of("B") @ of("K") if cls.letter == "K" else of("L") @ of("C"))
 
     @staticmethod
-    def equations(of: Callable[[str], Term], *, discrete: bool, cross: bool = True) -> tuple[tuple[Relation, str], ...]:
-        """Return Riccati's equation and that of the gain, with their texts."""
+    def equations(*, discrete: bool, cross: bool = True) -> tuple[str, str]:
+        """Return Riccati's equation and that of the gain; `noise` is G W Gᵀ."""
         raise NotImplementedError
 
     # -- construction ------------------------------------------------------------------------------------------------
@@ -184,9 +188,9 @@ class OptimalGain(Result):
         def of(name: str) -> Term:
             return e[name]
 
-        yield equality(of("P"), of("P").T, e, "P = P.T")
-        for equation, says in self.equations(of, discrete=plant.is_discrete):
-            yield Claim(equation, e, says)
+        yield holds(e, "P = P.T")
+        for equation in self.equations(discrete=plant.is_discrete):
+            yield holds(e, equation)
         pencil = e["s"] @ identity(plant.order, e) - self.loop(of)
         yield equality(pencil.apply("det"), of("p"), e, "the polynomial is that of the loop")
         v, factors = plant.variable, self.answer["factors"]
@@ -208,12 +212,10 @@ class OptimalGain(Result):
         A, _, Q = regulator.uncrossed
         row, of = (regulator.B.T, regulator.A.T) if found.kind == "uncontrollable" else (Q, A)
         e = Environment(variable=plant.variable, values={"row": row, "of": of, "N": found.N, "X": found.X})
-        N, X = e["N"], e["X"]
-        yield equality(e["row"] @ N, Matrix.zeros(row.shape[0], found.N.shape[1]), e, "N is hidden")
-        yield equality(e["of"] @ N, N @ X, e, "N is invariant")
-        yield equality(N.apply("rank"), found.N.shape[1], e, "N has full rank")
-        pencil = X.pencil
-        yield equality(pencil.apply("det"), found.polynomial, e, "the polynomial of the hidden modes")
+        yield holds(e, "row*N = 0", "N is hidden")
+        yield holds(e, "of*N = N*X", "N is invariant")
+        yield holds(e, f"rank(N) = {found.N.shape[1]}", "N has full rank")
+        yield holds(e, "det(pencil(X)) = {modes}", "the polynomial of the hidden modes", modes=found.polynomial)
         signs, variable, discrete = plant.symbols.signs, plant.variable, plant.is_discrete
         if found.kind == "uncontrollable":
             is_unstable = stability(found.polynomial, variable, signs, discrete=discrete).verdict == "no"
@@ -232,13 +234,22 @@ class OptimalGain(Result):
             return "undecided"
         return "no" if self.answer["obstacle"] is not None else super().verdict
 
+    @cached_property
+    def as_given(self) -> GainDesign | None:
+        """The gain as a given one: exact, else its certain digits, with which the loop is stable; None where there is none."""
+        gain = self.numbers[self.letter]
+        return None if gain is None else self.design_kind.of_given(self.plant, gain)
+
     @property
     def loop_matrix(self) -> Matrix | None:
-        """A − BK, or A − LC, of the exact gain, else of the certain digits; None where there is no gain."""
-        gain, m = self.answer[self.letter], self.plant.matrices
-        if gain is None and self.decimals:
-            gain = Matrix.of([[Fraction(entry) for entry in row] for row in self.decimals[self.letter]])
-        return None if gain is None else m.A - (m.B @ gain if self.letter == "K" else gain @ m.C)
+        """A − BK, or A − LC, of the gain as it is given."""
+        found: Matrix | None = self.numbers[self.of_loop[0]]
+        return found
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """Those of the gain as it is given."""
+        return super().systems if self.as_given is None else self.as_given.systems
 
     @cached_property
     def even(self) -> Scalar:
@@ -348,8 +359,21 @@ class OptimalGain(Result):
             moved = [to_disc(factor, v) for factor in factors] if plant.is_discrete else factors
             poles = tuple(root for factor in moved for root in roots_of(factor, v))
         found = {self.letter: answer[self.letter], "P": answer["P"], "polynomial": answer["polynomial"], "poles": poles}
-        asked = answer["question"]
+        gain, asked, m = answer[self.letter], answer["question"], plant.matrices
+        if self.letter == "K":
+            found["closed_loop_matrix"] = None if gain is None else (m.A - m.B @ gain).normal()
+        else:
+            found["A"] = None if gain is None else (m.A - gain @ m.C).normal()
+            found |= {"B_u": None if gain is None or not m.has_input else (m.B - gain @ m.D).normal(), "B_y": gain}
         return {**found, "modes": self.hidden_modes, **({} if asked is None else {"question": asked})}
+
+    @cached_property
+    def numbers(self) -> Mapping[str, Any]:
+        """The fields, and where no square roots write them the certain digits of gain and P as rational numbers."""
+        digits = self.decimals if self.answer[self.letter] is None else {}
+        exact = {name: Matrix.of([[Fraction(e) for e in row] for row in rows]) for name, rows in digits.items()}
+        of_gain = self.design_kind.of_given(self.plant, exact[self.letter]).fields if exact else {}
+        return {**self.fields, **{name: of_gain[name] for name in self.of_loop if name in of_gain}, **exact}
 
     @property
     def decimals(self) -> dict[str, Any]:

@@ -159,11 +159,10 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
     if not matched:
         page.define(letter, page.value(answer[letter]), say="optimal_gain", answer=True, closing=False)
 
-    def of(name: str) -> Term:
-        return _noise(page, result) if name == "noise" else page[_LETTERS.get(name, name)]
-
-    equations = result.equations(of, discrete=plant.is_discrete, cross=not result.regulator.N.is_zero)
-    page.verified("optimal_checked", riccati=equations[0][0], gain=equations[1][0])
+    slots = {**_LETTERS, "noise": _noise(page, result)} if letter == "L" else _LETTERS
+    equations = result.equations(discrete=plant.is_discrete, cross=not result.regulator.N.is_zero)
+    riccati, gain = (page.line(equation, **slots) for equation in equations)
+    page.verified("optimal_checked", riccati=riccati, gain=gain)
     chi = page.define(
         f"chi_{letter}", _pencil(page, result, page[letter]).apply("det"), answer["polynomial"], silent=True
     )

@@ -480,14 +480,14 @@ class AdvisedPoles(Result):
         sigma, omega_d, request = self.answer["sigma"], self.answer["omega_d"], self.request
         assert request.settling_time is not None and request.overshoot is not None  # noqa: S101, PT018
         product = sigma * request.settling_time
-        yield equality(product, 4, e, "sigma*T = 4")
+        yield equality(product, 4, e)
         yield Claim(relation(function("exp", -product), "<=", Scalar.of(Fraction(1, 50))), e)
         if (omega_d is None) != (self.count < 2):
             raise CertificateRejected("two poles and more begin with a pair")
         if omega_d is not None:
             yield Claim(relation(overshoot_of(omega_d / sigma), "<=", request.overshoot), e)
         expected = product_of(dominated(self.count, sigma, omega_d, self.plant.variable))
-        yield equality(e["phi_r"], expected, e, "phi_r = (pair)(further left)")
+        yield equality(e["phi_r"], expected, e)
 
     def _claims_of_fixed_modes(self) -> Iterator[Claim]:
         """Yield the claim that the modes missing among the poles are unobservable."""
@@ -498,11 +498,11 @@ class AdvisedPoles(Result):
         size = N.shape[1]
         e = Environment(variable=variable, values={"A": m.A, "C": m.C, "N": N, "X": X})
         A, C, N_, X_ = (e[name] for name in ("A", "C", "N", "X"))
-        yield equality(C @ N_, Matrix.zeros(1, size), e, "C*N = 0")
+        yield equality(C @ N_, Matrix.zeros(1, size), e)
         yield equality(A @ N_, N_ @ X_, e)
         yield equality(N_.apply("rank"), size, e)
         pencil = X_.pencil
-        yield equality(pencil.apply("det"), pair.fixed_polynomial, e, "det(s*I - X) = fixed polynomial")
+        yield equality(pencil.apply("det"), pair.fixed_polynomial, e)
 
     # -- what follows ------------------------------------------------------------------------------------------------
 

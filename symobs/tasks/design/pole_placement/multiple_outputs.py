@@ -280,11 +280,11 @@ class Family:
             values["L"] = part if answer["shift"] is None else part - transposed_for_task(answer["shift"])
         e = Environment(variable=self.pair.variable, values=values)
         A_, C_, F, G, X = (e[name] for name in ("A", "C", "F", "G", "X"))
-        yield equality(A_.T @ X - X @ F, C_.T @ G, e, "A.T*X - X*F = C.T*G")
+        yield equality(A_.T @ X - X @ F, C_.T @ G, e)
         if self.general is not None:
-            yield equality(e["L"].T @ X, G, e, "L.T*X = G")
+            yield equality(e["L"].T @ X, G, e)
         weights, first = Matrix.row(self.equation.weights), Matrix.unit(A.shape[0], 0).T
-        yield equality(Term(Literal(weights), e) @ G, first, e, "w*G = [1, 0, ..., 0]")
-        yield Claim(relation(X.apply("det"), "!==", 0), e, "det(X) is not zero identically")
+        yield equality(Term(Literal(weights), e) @ G, first, e)
+        yield Claim(relation(X.apply("det"), "!==", 0), e)
         rows = len(answer["parameters"]) - self.H.shape[0] * self.H.shape[1]
         yield equality(rows, A.shape[0] * (C.shape[0] - 1), e, "G has n*(p - 1) parameters")

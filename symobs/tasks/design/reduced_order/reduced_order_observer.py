@@ -206,15 +206,15 @@ class ReducedOrderObserver(Result):
             raise CertificateRejected("G belongs to a plant with an input, and to no other")
         A, C, L, F, H, M, R = (e[name] for name in ("A", "C", "L", "F", "H", "M", "R"))
         P = R - L @ C
-        yield equality(P @ A - F @ P, H @ C, e, "P*A - F*P = H*C")
+        yield equality(P @ A - F @ P, H @ C, e)
         if answer["G"] is not None:
             driven = P @ e["B"]
             if plant.matrices.has_feedthrough:
                 driven = driven - H @ e["D"]
-            yield equality(e["G"], driven, e, "G = P*B - H*D")
-        yield equality(M @ block([[C], [P]]), identity(plant.order, e), e, "M*[C; P] = I")
+            yield equality(e["G"], driven, e)
+        yield equality(M @ block([[C], [P]]), identity(plant.order, e), e)
         pencil = F.pencil
-        yield equality(pencil.apply("det"), e["phi"], e, "det(s*I - F) = phi(s)")
+        yield equality(pencil.apply("det"), e["phi"], e)
 
     @property
     def systems(self) -> Mapping[str, Realisation]:
@@ -314,8 +314,8 @@ class DependentOutputs(ReducedOrderObserver):
         """Yield w C = 0 and w ≠ 0."""
         e = Environment(values=letters_of(self.plant) | {"w": self.answer["w"]})
         w, m = e["w"], self.plant.matrices
-        yield equality(w @ e["C"], Matrix.zeros(1, m.C.shape[1]), e, "w*C = 0")
-        yield Claim(relation(w, "!==", Matrix.zeros(1, m.C.shape[0])), e, "w is not 0")
+        yield equality(w @ e["C"], Matrix.zeros(1, m.C.shape[1]), e)
+        yield Claim(relation(w, "!==", Matrix.zeros(1, m.C.shape[0])), e)
         if any(self.answer[name] is not None for name in "LTFGHM"):
             raise CertificateRejected("outputs that depend on each other leave no observer of order n - p")
 

@@ -124,16 +124,16 @@ class FeedforwardDesign(OfLoop):
             still = A @ e["x_0"] - B @ K_ @ e["x_0"]
             there = e["x_0"] if self.plant.is_discrete else Matrix.zeros(order, 1)
             yield equality(still, there, e, "a mode never comes to rest")
-            yield Claim(relation(e["x_0"], "!==", Matrix.zeros(order, 1)), e, "the mode is not 0")
+            yield Claim(relation(e["x_0"], "!==", Matrix.zeros(order, 1)), e)
             return
         rest = (one - A + B @ K_ if self.plant.is_discrete else B @ K_ - A).inverse
         at_rest = (C - D @ K_) @ rest @ B + D
         if w is not None:
-            yield equality(e["w"] @ at_rest, Matrix.zeros(1, self.plant.inputs), e, "w*G = 0")
-            yield Claim(relation(e["w"], "!==", Matrix.zeros(1, self.plant.outputs)), e, "w is not 0")
+            yield equality(e["w"] @ at_rest, Matrix.zeros(1, self.plant.inputs), e)
+            yield Claim(relation(e["w"], "!==", Matrix.zeros(1, self.plant.outputs)), e)
             return
         F_, T, s = e["F"], e["T_v"], e["s"]
-        yield equality(at_rest @ F_, identity(self.plant.outputs, e), e, "G*F = I")
+        yield equality(at_rest @ F_, identity(self.plant.outputs, e), e)
         yield equality(T, (C - D @ K_) @ (s @ one - A + B @ K_).inverse @ B @ F_ + D @ F_, e)
         if isinstance(self.loop, KnownState):
             return

@@ -134,16 +134,16 @@ class IntegralAction(Result):
         whole, size = _system(e, plant), extended_order(plant)
         if w is None:
             beside = replace(e, relations=(*relations, *outside(self.distances)), signs=plant.symbols.signs)
-            yield equality(whole.apply("rank"), size, beside, "rank [A B; C D] = n + p")
+            yield equality(whole.apply("rank"), size, beside)
         else:
-            yield equality(e["w"] @ whole, Matrix.zeros(1, plant.order + plant.inputs), e, "w*[A B; C D] = 0")
-            yield Claim(relation(e["w"], "!==", Matrix.zeros(1, size)), e, "w is not 0")
+            yield equality(e["w"] @ whole, Matrix.zeros(1, plant.order + plant.inputs), e)
+            yield Claim(relation(e["w"], "!==", Matrix.zeros(1, size)), e)
         if K is not None:
             both = block([[e["K"], -e["k_I"]]])
             yield equality(both, self.loop.answer["K"], e, "[K, -k_I] is the feedback of plant and integrator")
             closed = block(closed_loop(e, plant))
             pencil = closed.pencil
-            yield equality(pencil.apply("det"), self.answer["polynomial"], e, "det(s*I - closed loop) = phi")
+            yield equality(pencil.apply("det"), self.answer["polynomial"], e)
 
     @cached_property
     def blocked(self) -> tuple[tuple[Scalar, ...], ...]:

@@ -103,10 +103,10 @@ def test_a_false_claim_has_none(relation: Relation) -> None:
         check_all([Claim(relation, Environment(values=SERVO))])
 
 
-def test_a_claim_is_called_what_it_says_or_what_it_is() -> None:
+def test_a_claim_is_called_what_it_is_behind_what_it_says() -> None:
     relation = said(Apply("det", PENCIL), Letter("phi"))
     assert str(Claim(relation, Environment(variable="z"))) == "det(z*I - A + L*C) = phi(z)"
-    assert str(Claim(relation, Environment(), "as asked")) == "as asked"
+    assert str(Claim(relation, Environment(), "as asked")) == "as asked: det(s*I - A + L*C) = phi(s)"
 
 
 # -- signals ------------------------------------------------------------------------------------------------------------

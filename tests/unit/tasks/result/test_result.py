@@ -50,7 +50,7 @@ def squared(number: Scalar, square: Scalar, plant: StateSpace = SERVO) -> Square
 def test_a_result_holds_or_is_not() -> None:
     number = Scalar.of(3)
     found = squared(number, number * 3)
-    assert found.certificates == (Certificate("a square", "exact", "0"), Certificate("shown", "by hand", "0"))
+    assert found.certificates == (Certificate("a square: 9 = 9", "exact", "0"), Certificate("shown", "by hand", "0"))
     assert found.all_certificates == found.certificates
     with pytest.raises(CertificateRejected, match="a square"):
         squared(number, number)
