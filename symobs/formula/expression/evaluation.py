@@ -27,7 +27,7 @@ from symobs.formula.expression.source import (
     work,
 )
 from symobs.formula.expression.syntax import operands_first, parse
-from symobs.formula.expression.tokenizer import Tokeniser
+from symobs.formula.expression.tokenizer import LEADING_ZERO, Tokeniser
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded
 
@@ -72,7 +72,7 @@ _MOST_NAMES = 100
 def plain_rows(text: str, scope: Scope) -> tuple[list[list[Number]], bool] | None:
     """Return rows of entries, and whether they are in brackets; None if the text is not plain."""
     inside = text.strip(" ")
-    if scope.rounding and "." in inside:
+    if (scope.rounding and "." in inside) or LEADING_ZERO.search(inside):
         return None
     bracketed = inside[:1] == "[" and inside[-1:] == "]"
     if bracketed:
@@ -361,8 +361,8 @@ class Evaluator:
 
     def _square_root(self, place: int, radicand: Scalar) -> Scalar:
         """Return the root that is not negative: sqrt(a^2) is a or -a, decided by the signs of what stands in a."""
-        root = generators.square_root(radicand)
         unit, factors = radicand.factors()
+        front = 1
         odd = [factor for factor, power in factors if power % 2]
         for factor, power in factors:
             if power % 4 < 2:  # an even power of it stands before the root
@@ -373,8 +373,8 @@ class Evaluator:
             if not side:
                 message = f"sqrt of a square: {shown(str(factor))} may be negative"
                 raise self.source.error(message, place, "write it without sqrt, or declare the symbol positive")
-            root = root if side > 0 else -root
-        return root
+            front *= side
+        return generators.square_root(radicand) * front
 
     def _side(self, factor: Scalar) -> int:
         """Return the side of 0 on which a factor lies by the signs of its terms: 1, -1, or 0 where they do not say."""

@@ -37,7 +37,10 @@ def verdict(text: str, answer: str) -> str:
 
 def expected(problem: Problem, text: str) -> str:
     solved = checked(problem.text)
-    unmet, is_open = held_against(solved.problem.viewed(solved.results), {problem.field: text})
+    try:
+        unmet, is_open = held_against(solved.problem.viewed(solved.results), {problem.field: text})
+    except ProblemErrors:
+        return "unreadable"
     return "undecided" if is_open else "wrong" if unmet else "right"
 
 
