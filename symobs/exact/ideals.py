@@ -20,6 +20,7 @@ from symobs.exact.core.field import EIGENVALUE, Field, context_of
 from symobs.exact.core.generators import function_named
 from symobs.exact.core.polynomial import from_coefficients
 from symobs.exact.core.scalar import Scalar
+from symobs.ground.errors import Undecided
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -325,8 +326,8 @@ _UNIT = "_e"
 _INVERSE = "1/"
 
 
-class TooLarge(ArithmeticError):
-    """A Gröbner basis exceeds the limits; the question is undecided."""
+class TooLarge(Undecided, ArithmeticError):
+    """A Gröbner basis exceeds the limits: what depends on it is undecided."""
 
 
 class Ideal:

@@ -68,6 +68,12 @@ class BudgetExceeded(ExpressionError):
     """A text, or its value, exceeds the limits of size."""
 
 
+class OpenEquality(BudgetExceeded):
+    """Whether two values are equal is not decided: neither is said."""
+
+    exit_code = 5
+
+
 class InexactInput(InputError, TypeError):
     """A floating-point number in place of an exact one."""
 

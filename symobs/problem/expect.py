@@ -6,20 +6,18 @@ import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from itertools import chain
+from itertools import chain, repeat
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, TooLarge, product_of, rank, root_of_pole
 from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
 from symobs.exact.algebraic.rounded_decimals import decimals_in, polynomial_of, rounds_to, written_out
-from symobs.exact.core.generators import NotWritten, functions_in, identities, roots_in, substitute, symbols_in
-from symobs.exact.time_functions.matrix_power import PowerOf, by_factors
+from symobs.exact.core.generators import symbols_in
 from symobs.formula.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.formula.expression.source import shown
-from symobs.formula.tree import Environment, Literal, Relation
-from symobs.ground.errors import CertificateRejected, InputError, ProblemErrors, SymobsError
-from symobs.proof.certificate.claims import verify
-from symobs.system.conditions import Condition
+from symobs.ground.errors import CertificateRejected, InputError, OpenEquality, ProblemErrors, SymobsError
+from symobs.problem.agreement import agrees, functions_agree
+from symobs.system.conditions import Condition, vanishing_factors
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
@@ -32,6 +30,7 @@ __all__ = [
     "applicable",
     "available",
     "found_in",
+    "held_against",
     "is_digits",
     "met",
     "mismatches",
@@ -39,58 +38,6 @@ __all__ = [
     "shown_value",
     "unreadable",
 ]
-
-
-# Equality of functions of time: exponentials, sines, cosines and square roots.
-
-
-def agrees(expected: Scalar | Matrix, found: Scalar | Matrix) -> bool:
-    """Return whether the value found equals the expected one, or rounds to its decimals."""
-    if not decimals_in(expected):
-        return bool(expected == found)
-    pairs = [(expected, found)]
-    if isinstance(expected, Matrix) and isinstance(found, Matrix):
-        if expected.shape != found.shape:
-            return False
-        pairs = list(zip(expected.entries, found.entries, strict=True))
-    return all(rounds_to(one, other) for one, other in pairs)  # type: ignore[arg-type]
-
-
-def functions_agree(left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
-    """Return whether two values are equal as functions, by common exponentials, sines and cosines.
-
-    Decimals of the one on the left may be rounded.  Raises `TooLarge` where common ones would have too high a degree, and
-    for sequences that are equal at the first instants and are not seen to be equal at all.
-    """
-    if decimals_in(left):
-        return agrees(left, right)
-    if any(isinstance(function, PowerOf) for function in functions_in([left, right])):
-        return _sequences_agree(left, right)
-    try:
-        meanings, relations = identities([left, right])
-    except NotWritten as error:
-        raise TooLarge(str(error)) from error
-    environment = Environment(coefficients=meanings, relations=relations)
-    return bool(verify(Relation((Literal(left), Literal(right)), ("=",)), environment)[0])
-
-
-def _sequences_agree(left: Any, right: Any) -> bool:
-    """Return whether two functions of k with powers λᵏ are equal at all k ≥ 0."""
-    if by_factors(left) == by_factors(right):
-        return True
-    for k in range(_INSTANTS):
-        try:
-            one, other = (substitute(value, {"k": Scalar.of(k)}) for value in (left, right))
-        except ZeroDivisionError:
-            return False
-        if not functions_agree(one, other):
-            return False
-    message = f"the sequences are equal at the first {_INSTANTS} instants"
-    raise TooLarge(message)
-
-
-#: At so many instants sequences are held against each other that are not equal by their form.
-_INSTANTS = 12
 
 
 # Expected roots and numbers: a + b sqrt(c), CRootOf(polynomial, index), sums of square roots.
@@ -142,7 +89,7 @@ def roots_round_to(printed: tuple[Complex, ...], found: list[Root], variable: st
 
 def root_rounds_to(printed: Complex, found: Root) -> bool:
     """Return whether a root with a closed form rounds to the decimals of a printed number."""
-    return found.is_closed and is_number(parse_poles(str(found), functions=True)[0], printed)
+    return found.is_closed and is_number(parse_poles(str(found), functions=True)[0], printed, None)
 
 
 def _surd(text: str, names: Any, variable: str, where: str) -> Root:
@@ -185,18 +132,19 @@ def numbers_agree(found: list[Any], expected: list[Any], names: Any, where: str)
     for i, entry in enumerate(expected):
         counted = isinstance(entry, str) and "CRootOf" in entry
         read = [] if counted else parse_poles([entry], names, where=f"{where}[{i}]", functions=True, rounding=True)
-        match = next((n for n in waiting if (str(n) == entry if counted else is_number(n, read[0]))), None)
+        match = next((n for n in waiting if (str(n) == entry if counted else is_number(n, read[0], names))), None)
         if match is None:
             return False
         waiting.remove(match)
     return not waiting
 
 
-def is_number(found: Complex | Root, expected: Complex) -> bool:
+def is_number(found: Complex | Root, expected: Complex, signs: Any) -> bool:
     """Return whether a complex number equals the expected one as a function of its symbols."""
     if isinstance(found, Root):
         return False
-    return functions_agree(expected.real, found.real) and functions_agree(expected.imaginary, found.imaginary)
+    pairs = (expected.real, found.real), (expected.imaginary, found.imaginary)
+    return all(functions_agree(*pair, signs) for pair in pairs)
 
 
 # Comparison of structured values: tables by the expected keys, lists by entries, down to expressions.
@@ -217,16 +165,16 @@ def agree(found: Any, expected: Any, names: Any, where: str) -> bool:
         return all(agree(entry, wanted, names, f"{where}[{i}]") for i, (entry, wanted) in pairs)
     if found is None or isinstance(found, bool) or expected is None or isinstance(expected, (bool, list, Mapping)):
         if isinstance(found, Matrix) and isinstance(expected, list):
-            return agrees(parse_matrix(expected, _knowing(names, found), where=where, rounding=True), found)
+            return agrees(parse_matrix(expected, _knowing(names, found), where=where, rounding=True), found, names)
         return type(found) is type(expected) and bool(found == expected)
     if isinstance(found, Matrix):
         if not isinstance(expected, str):
             return False
-        return agrees(parse_matrix(expected, _knowing(names, found), where=where, rounding=True), found)
+        return agrees(parse_matrix(expected, _knowing(names, found), where=where, rounding=True), found, names)
     if isinstance(found, (Scalar, Factored, int)):
         value = found.value if isinstance(found, Factored) else Scalar.of(found) if isinstance(found, int) else found
         known = _knowing(names, value)
-        return functions_agree(parse_scalar(expected, known, where=where, functions=True, rounding=True), value)
+        return functions_agree(parse_scalar(expected, known, where=where, functions=True, rounding=True), value, names)
     return str(found) == str(expected) or _agree_as_mathematics(str(found), str(expected), names, where)
 
 
@@ -288,7 +236,7 @@ def factors_agree(found: list[tuple[Scalar, int]], expected: list[Any], names: A
             known = _knowing(known, factor)
         read.append((parse_scalar(pair[0], known, where=f"{where}[{i}][0]", rounding=True), pair[1]))
     return len(read) == len(found) and all(
-        any(power == other and agrees(value, factor) for value, other in read) for factor, power in found
+        any(power == other and agrees(value, factor, names) for value, other in read) for factor, power in found
     )
 
 
@@ -317,7 +265,7 @@ def _agree_as_mathematics(found: str, expected: str, names: Any, where: str) -> 
         )
     except SymobsError:
         return False
-    return functions_agree(left, right)
+    return functions_agree(left, right, names)
 
 
 # Equivalence of conjunctions of relations.
@@ -327,12 +275,20 @@ def conditions_agree(
     found: Iterable[Any], expected: Iterable[Any], names: Any, where: str, signs: Mapping[str, str]
 ) -> bool:
     """Return whether two conjunctions of relations are proved equivalent."""
-    ours = {relation(str(entry), names, where) for entry in found}
-    theirs = {relation(entry, names, where) for entry in expected}
+    ours = {each for entry in found for each in _factor_by_factor(relation(str(entry), names, where), signs)}
+    theirs = {each for entry in expected for each in _factor_by_factor(relation(entry, names, where), signs)}
     if any(decimals_in(value) for value, _ in theirs):
         pairs = [(mine, other) for other in theirs for mine in ours if relations_agree(other, mine)]
         return {mine for mine, _ in pairs} == ours and {other for _, other in pairs} == theirs
     return ours == theirs or (_implies(ours, theirs, signs) and _implies(theirs, ours, signs))
+
+
+def _factor_by_factor(condition: tuple[Scalar, str], signs: Mapping[str, str]) -> Iterable[tuple[Scalar, str]]:
+    """Return for a product that must not vanish its factors, without those that the signs keep from it."""
+    value, operator = condition
+    if operator != "!=" or value.is_zero or decimals_in(value):
+        return [condition]
+    return [(factor, operator) for factor in vanishing_factors([value], signs)]
 
 
 def _implies(
@@ -383,6 +339,16 @@ def mismatches(results: Sequence[Answered], expect: Mapping[str, Any]) -> list[s
     return lines
 
 
+def held_against(results: Sequence[Answered], expect: Mapping[str, Any]) -> tuple[list[str], bool]:
+    """Return the lines of `mismatches`, or those on what is not decided, and whether that is so."""
+    try:
+        return mismatches(results, expect), False
+    except ProblemErrors as error:
+        if not all(isinstance(each, OpenEquality) for each in error.errors):
+            raise
+        return str(error).split("\n"), True
+
+
 def applicable(results: Sequence[Answered], expect: Mapping[str, Any]) -> dict[str, Any]:
     """Return the expected answers of these results."""
     tasks = {result.task for result in results}
@@ -411,7 +377,7 @@ def _held_against(result: Answered, expected: Mapping[str, tuple[Any, str]], err
         except SymobsError as error:
             errors.append(error)
         except TooLarge as error:
-            errors.append(InputError(str(error), where=where, repair="write it by the functions of the answer"))
+            errors.append(OpenEquality(str(error), where=where, repair="write it by the functions of the answer"))
     return lines
 
 
@@ -503,34 +469,33 @@ def shown_value(value: Any) -> str:
 def met(result: Answered, name: str, expected: Any, where: str) -> bool:
     """Return whether an expected answer equals that of the result."""
     found, names, variable = found_in(result, name), names_of(result), result.plant.variable
-    if found is None and isinstance(expected, (str, list)) and (near := _digits(result, name)) is not None:
-        return agrees(parse_matrix(expected, names, where=where, rounding=True), near)
+    signs = result.plant.symbols.signs
+    if found is None and isinstance(expected, (str, list)):
+        near = digits_of(result, name, 2 * len(str(expected)))
+        if near is not None:
+            return agrees(parse_matrix(expected, names, where=where, rounding=True), near)
     in_time = result.in_time or result.plant.is_time_varying
-    fields = [result.plant.field, *([found.field] if isinstance(found, (Matrix, Scalar)) else [])]
-    has_functions = any(not function.square for field in fields for function in field.functions.values())
     if in_time and isinstance(found, (Matrix, Scalar)):
         time = result.argument if result.in_time else "t"
         names = names and {name: sign for name, sign in names.items() if name != time}
         read = parse_matrix if isinstance(found, Matrix) else parse_scalar
-        return functions_agree(read(expected, names, variable=time, where=where, functions=True, rounding=True), found)
+        return functions_agree(
+            read(expected, names, variable=time, where=where, functions=True, rounding=True), found, signs
+        )
     if isinstance(found, Matrix):
         known = names if names is None or variable not in found.names else {**names, variable: "real"}
-        if has_functions:
-            return functions_agree(parse_matrix(expected, known, where=where, functions=True, rounding=True), found)
-        return agrees(parse_matrix(expected, known, where=where, rounding=True), found)
+        return agrees(parse_matrix(expected, known, where=where, functions=True, rounding=True), found, signs)
     table = factored_table(found)
     if table is not None:
         known = None if names is None else {**names, variable: "real"}
-        return agrees(parse_matrix(expected, known, where=where, rounding=True), table)
+        return agrees(parse_matrix(expected, known, where=where, functions=True, rounding=True), table, signs)
     if isinstance(found, Mapping):
         return agree(found, expected, names, where)
     if isinstance(found, (Scalar, Factored)):
         value = found.value if isinstance(found, Factored) else found
         free = None if names is not None and variable in names else variable
-        if has_functions or roots_in(value):
-            read_as = parse_scalar(expected, names, variable=free, where=where, functions=True, rounding=True)
-            return functions_agree(read_as, value)
-        return agrees(parse_scalar(expected, names, variable=free, where=where, rounding=True), value)
+        read_as = parse_scalar(expected, names, variable=free, where=where, functions=True, rounding=True)
+        return agrees(read_as, value, signs)
     if is_digits(found) and not isinstance(expected, bool):
         return agrees(parse_scalar(expected, names, where=where, rounding=True), Scalar.of(Fraction(found)))
     if isinstance(found, int) and not isinstance(found, bool):
@@ -550,17 +515,23 @@ def is_digits(value: Any) -> bool:
     return isinstance(value, str) and re.fullmatch(r"-?\d+(\.\d+)?", value) is not None
 
 
-def _digits(result: Answered, name: str) -> Matrix | None:
-    """Return the certain digits of a matrix without a closed form."""
+def digits_of(result: Answered, name: str, digits: int) -> Matrix | None:
+    """Return a matrix without a closed form to so many certain digits, None where there are none."""
     whole, (own, sign) = (
         (result.result, result.standard(name)) if isinstance(result, ResultInConvention) else (result, (name, 1))
     )
-    table = whole.decimals.get(own)
-    return None if table is None else Matrix.of([[Fraction(entry) * sign for entry in row] for row in table])
+    table = whole.decimals_to(min(digits, _MOST_DIGITS)).get(own) if own in whole.decimals else None
+    if not isinstance(table, list) or not all(isinstance(row, list) for row in table):
+        return None
+    return Matrix.of([[Fraction(entry) * sign for entry in row] for row in table])
+
+
+#: More digits than these are not computed.
+_MOST_DIGITS = 200
 
 
 def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where: str) -> bool:
-    names, variable = names_of(result), result.plant.variable
+    names, variable, signs = names_of(result), result.plant.variable, result.plant.symbols.signs
     if not found or not expected:
         return not found and not expected
     if all(isinstance(entry, Root) for entry in found):
@@ -581,7 +552,7 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where:
             parse_scalar(entry, names, variable=result.argument, where=where, functions=True, rounding=True)
             for entry in expected
         ]
-        return len(read) == len(found) and all(map(functions_agree, read, found))
+        return len(read) == len(found) and all(map(functions_agree, read, found, repeat(signs)))
     if all(isinstance(entry, Scalar) for entry in found):
         read = [parse_scalar(entry, names, where=f"{where}[{i}]", rounding=True) for i, entry in enumerate(expected)]
         return len(read) == len(found) and all(map(agrees, read, found))
@@ -623,6 +594,7 @@ def _is_end(found: str, expected: str, names: Any, where: str) -> bool:
     return functions_agree(
         parse_scalar(expected, names, where=where, functions=True, rounding=True),
         parse_scalar(found, names, where=where, functions=True),
+        names,
     )
 
 
@@ -684,7 +656,7 @@ def _tables_agree(found: list[list[Any]], expected: Any, names: Any, where: str)
     for left, right in zip(chain(*table), chain(*expected), strict=True):
         if left != right:
             one, other = (parse_poles([cell], names, where=where, functions=True)[0] for cell in (left, right))
-            if not is_number(one, other):
+            if not is_number(one, other, names):
                 return False
     return True
 

@@ -77,6 +77,10 @@ class Question(Document):
         return (translated(self.page, self.convention),) if self.page is not None else ()
 
 
+#: Tasks whose answer may depend on parameters, and is then told with the values for which it is no.
+_MAY_DEPEND = {"observability", "controllability", "detectability", "stabilizability"}
+
+
 def question_of(problem: Problem) -> Question:
     """Return the question of a problem; raises `InputError` where its specification cannot be read."""
     asked = [(task, dict(_values(task, problem))) for task in problem.tasks]
@@ -90,6 +94,8 @@ def question_of(problem: Problem) -> Question:
                 page.remark("part", letter=_letter_of(place))
             for key in sentences_for(task, tokens_of(task, values, problem)):
                 page.steps.append(Note(_filled(page, task, key, values)))
+            if task.name in _MAY_DEPEND and problem.plant.field.names:
+                page.remark("exceptions_asked")
             if task.name == problem.plant_of:
                 page.remark("plant_found", letter=_letter_of(place))
     typed = problem.plant.is_in_decimals or has_decimals([*problem.specification.values()])

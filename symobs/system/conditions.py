@@ -45,6 +45,36 @@ _OPPOSITE = {
 _KNOWN = frozenset(SIGNS) - {"real"}
 
 
+class SumOfSquares(Scalar):
+    """Σ f²: 0 exactly where all f vanish, which are real.  That it is not 0 is told as f ≠ 0 or g ≠ 0."""
+
+    __slots__ = ("parts",)
+    parts: tuple[Scalar, ...]
+
+    @staticmethod
+    def of_parts(parts: Iterable[Scalar]) -> Scalar:
+        """Return the sum of the squares; of one polynomial the polynomial itself."""
+        parts = tuple(dict.fromkeys(part for part in parts if not part.is_zero))
+        if len(parts) == 1:
+            return parts[0]
+        total = sum((part**2 for part in parts), Scalar.of(0))
+        found = SumOfSquares(total.field, total.numerator_part, total.denominator_part)
+        found.parts = parts
+        return found
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return SumOfSquares.of_parts, (self.parts,)
+
+    @property
+    def numerator(self) -> Scalar:
+        """The sum itself, where its parts are polynomials."""
+        return self if self.denominator_part.is_one() else super().numerator
+
+    def substitute(self, values: Mapping[str, Scalar]) -> Scalar:
+        """Return the sum of the squares of the parts there."""
+        return SumOfSquares.of_parts(part.substitute(values) for part in self.parts)
+
+
 @dataclass
 class Condition:
     """expression operator 0, of the given kind."""
@@ -54,6 +84,8 @@ class Condition:
     operator: str = "!="
 
     def __str__(self) -> str:
+        if isinstance(self.expression, SumOfSquares) and self.operator == "!=":
+            return " or ".join("{} != {}".format(*solved(part)) for part in self.expression.parts)
         return f"{self.expression} {self.operator} 0"
 
 
@@ -202,10 +234,9 @@ def _sign_by_letters(factor: Scalar, declared: tuple[tuple[str, str], ...], know
         if found in _NEVER_ZERO:
             return found
         known = found if known == "real" else known
-    found = (
-        ("real",) if factor.size > _BY_DISCRIMINANT_UP_TO else (_sign_beside(factor, n, signs) for n in factor.names)
-    )
-    return next((sign for sign in found if sign != "real"), known)
+    names = factor.names if factor.size <= _BY_DISCRIMINANT_UP_TO else ()
+    beside = (_sign_beside(factor, name, signs) for name in names)
+    return next((sign for sign in beside if sign != "real"), known)
 
 
 def _sign_beside(factor: Scalar, name: str, signs: Mapping[str, str]) -> str:
@@ -294,7 +325,7 @@ def vanishing_factors(values: Iterable[Scalar], signs: Mapping[str, str]) -> tup
     for value in values:
         if value.is_constant or _sum_of_terms(value.numerator, signs) in _NEVER_ZERO:
             continue
-        if value.numerator.size > FACTORED_UP_TO:
+        if value.numerator.size > FACTORED_UP_TO or isinstance(value, SumOfSquares):
             found[value.numerator] = None
             continue
         for factor, _ in value.numerator.factors()[1]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 from symobs.exact import Complex, Field, Ideal, Matrix, Scalar, apart_from_zero, companion, modulo
 from symobs.exact.core.generators import NotWritten, substitute, symbols_in
 from symobs.exact.floating.sampled import nearest_double
+from symobs.exact.numerals.written_digits import in_digits
 from symobs.ground.errors import InputError, SymobsError, raise_all
 from symobs.system.findings import Findings
 from symobs.system.reading import (
@@ -160,6 +161,9 @@ class StateSpace:
     `P * Q`, `P + Q` and `P.feedback(Q)` connect plants as python-control does; Q may be a gain.
     Raises `ShapeMismatch`, `InexactInput` (floats), `ExpressionError`, `UnknownName`; all of them are `InputError`.
     """
+
+    #: Whether irrational data were rounded.
+    is_rounded = False
 
     def __init__(
         self,
@@ -387,6 +391,23 @@ class StateSpace:
         plant.written = plant.polynomial = plant.nonlinear = None
         plant.nonzero = tuple(dict.fromkeys((*self.nonzero, *self.apart, *(value.numerator for value in nonzero))))
         return plant.asked_anew()
+
+    def in_digits(self) -> StateSpace:
+        """Return the plant with its irrational numbers rounded, which a page says; itself where it has none, or letters."""
+        m = self.matrices
+        if self.polynomial is not None or self.is_time_varying:
+            return self
+        A, B, C, D = map(in_digits, (m.A, m.B, m.C, m.D))
+        if A is None or B is None or C is None or D is None or (A, B, C, D) == (m.A, m.B, m.C, m.D):
+            return self
+        rounded = self.in_coordinates(A, B if m.has_input else None, C if m.has_output else None, D, ())
+        return rounded.with_rounding()
+
+    def with_rounding(self) -> StateSpace:
+        """Return the plant of a page that says of its data that they are rounded, and is written in decimals."""
+        plant = copy(self)
+        plant.is_rounded = plant.is_in_decimals = True
+        return plant
 
     def restricted(self, equations: Iterable[Scalar], nonzero: Iterable[Scalar] = ()) -> StateSpace:
         """Return the plant where some polynomials, which must have common zeros, vanish and others do not."""

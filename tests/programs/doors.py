@@ -13,11 +13,12 @@ import random
 import re
 import sys
 import time
+import warnings
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import symobs
-from symobs.ground.errors import SymobsError
+from symobs.ground.errors import SymobsError, SymobsWarning
 from symobs.problem.question import question_of
 from symobs.problem.validation import validate
 from symobs.tasks.result import tasks
@@ -38,6 +39,7 @@ _RANK_TESTS = {"observability", "controllability", "detectability", "stabilizabi
 
 def faults(name: str, problem: dict[str, Any], left: Callable[[], None] = lambda: None) -> str:
     """Return what went wrong with the doors of a problem, "refused" or "undecided" with a reason, or nothing."""
+    warnings.simplefilter("error", SymobsWarning)
     try:
         found = validate(problem)
         shown = render(question_of(found), "text"), render(question_of(found), "latex")

@@ -29,10 +29,10 @@ from symobs.applications.audit.evaluation import (
     Printed,
     Unknown,
     as_printed,
-    cannot_be_told_apart,
     common,
     equal,
     formula_of,
+    in_form,
     is_rounded,
     is_spectrum,
     spectral,
@@ -186,7 +186,7 @@ def _vanishes(node: SyntaxNode, reading: Reading) -> bool:
     """Return whether a part of an equation is zero."""
     try:
         found = value_of(node, reading)
-        return equal(*common(found, Scalar.of(0)))
+        return equal(*common(found, Scalar.of(0)), reading.where.signs)
     except (Misfit, *EVALUATION_ERRORS):
         return False
 
@@ -363,7 +363,7 @@ class EquationAuditor:
     def _true(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> bool:
         try:
             sides = spectral(left, right, self.problem.plant.variable)
-            return equal(*common(*(value_of(side, reading) for side in sides)))
+            return equal(*common(*(value_of(side, reading) for side in sides)), self.symbols)
         except (Misfit, *EVALUATION_ERRORS):  # InputError is a ValueError
             return False
 
@@ -381,12 +381,12 @@ class EquationAuditor:
             return Verdict(*self._misfit(printed_left, printed_right, str(misfit), environment))
         if reading.squares:
             return self._under_signs(printed_left, printed_right, reading)
-        if equal(*pair):
+        if equal(*pair, self.symbols):
             return self._where_it_holds(printed_left, printed_right, reading)
-        self.require_told_apart(*pair)
         rounded = [is_rounded(side, reading) for side in (left, right)]
         if (not letters_of(left) and letters_of(right)) or is_spectrum(right) or rounded == [True, False]:
             left, right, pair = right, left, (pair[1], pair[0])
+        pair = pair[0], in_form(pair[1], pair[0], self.symbols)
         spectra = (left, right) != (printed_left, printed_right) and (right, left) != (printed_left, printed_right)
         if isinstance(pair[0], Signal):
             return Verdict(*self._signals(left, right, pair, environment))
@@ -394,11 +394,6 @@ class EquationAuditor:
         if found is None:  # only rounding parts them
             return self._where_it_holds(printed_left, printed_right, reading)
         return Verdict(*found)
-
-    def require_told_apart(self, left: Printed, right: Printed) -> None:
-        """Raise `BudgetExceeded` where two sides may be equal although no certificate says so."""
-        if cannot_be_told_apart(left, right, self.symbols):
-            raise BudgetExceeded("the sides agree at a point, and whether they are equal everywhere is not decided")
 
     def _where_it_holds(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> Verdict | None:
         """Return the conditions of a true equation, None if there are none."""
@@ -448,7 +443,7 @@ class EquationAuditor:
             raise BudgetExceeded("a root of a square stands below another root, and signs are open")
         if not found:
             with suppress(Misfit):
-                self.require_told_apart(*common(*(self._value(side, other) for side in (left, right))))
+                equal(*common(*(self._value(side, other) for side in (left, right))), self.symbols)
         return found
 
     def _gaps(self, left: SyntaxNode, right: SyntaxNode, reading: Reading) -> set[object]:

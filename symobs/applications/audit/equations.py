@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import field
+from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from symobs.exact import VARIABLES, Factored, Ideal, Matrix, Scalar, TooLarge, rank
@@ -14,7 +14,7 @@ from symobs.formula.expression import parse_scalar
 from symobs.formula.expression.names import FUNCTIONS as SCALAR_FUNCTIONS
 from symobs.formula.expression.names import Scope
 from symobs.formula.expression.source import Source, shown
-from symobs.formula.expression.syntax import every, exponent_of, parse
+from symobs.formula.expression.syntax import SyntaxNode, every, exponent_of, parse
 from symobs.formula.expression.tokenizer import EXPONENTIAL, TOKENS, Tokeniser
 from symobs.formula.tree import Block, Derivative, Environment, Formula, Letter, Literal, Negative, Product, Sum
 from symobs.ground.dataclass import dataclass
@@ -25,9 +25,9 @@ from symobs.tasks.design.reduced_order.reduced_order_observer import partition
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping, Sequence
+    from fractions import Fraction
 
     from symobs.formula.convention import Convention
-    from symobs.formula.expression.syntax import SyntaxNode
     from symobs.system import StateSpace
     from symobs.tasks.result import Result
 
@@ -151,7 +151,9 @@ class Reading:
 
     def fails_where(self, values: Iterable[Scalar], says: str) -> None:
         """Note that something fails where all these values are 0."""
-        names = self.environment.signs.keys()
+        values, names = tuple(values), self.environment.signs.keys()
+        if any(roots_in(value) and self.where.sign(value) in _NEVER_ZERO for value in values):
+            return  # of its norm a factor may vanish that belongs to other signs of the roots
         found = [part for value in values for part in coefficients_over(_norm(value), names)]
         if not any(part.is_constant and not part.is_zero for part in found):
             self.gaps.append(Gap(tuple(found), says))
@@ -171,6 +173,10 @@ class Reading:
         if factor not in self.squares:
             self.squares.append(factor)
         return -1 if factor in self.turned else 1
+
+
+#: The signs of what never vanishes.
+_NEVER_ZERO = {"positive", "negative", "nonzero"}
 
 
 def _norm(value: Scalar) -> Scalar:
@@ -278,9 +284,40 @@ def read_relation(
     parts = [part for member in members for part in every(member)]
     if len(parts) > MOST_NODES:
         raise source.error(f"the equation has more than {MOST_NODES} parts", 0, "print it in parts", BudgetExceeded)
-    for part in parts:
+    members = tuple(map(_with_roots, members))
+    for part in (part for member in members for part in every(member)):
         _require_known(part, source)
     return members
+
+
+def _with_roots(node: SyntaxNode) -> SyntaxNode:
+    """Return a tree in which x^(p/2^n), with an odd p and n up to 4, is the p-th power of the root of the root … of x."""
+    parts = tuple(map(_with_roots, node.parts))
+    exponent = _fraction(parts[1]) if node.kind == "power" else None
+    if exponent is None or exponent.denominator not in _ROOTS:
+        return node if parts == node.parts else replace(node, parts=parts)
+    root = parts[0]
+    for _ in range(exponent.denominator.bit_length() - 1):
+        root = SyntaxNode("call", (root,), "sqrt", None, node.places)
+    power = SyntaxNode("number", (), str(abs(exponent.numerator)), Scalar.of(abs(exponent.numerator)))
+    power = SyntaxNode("negative", (power,)) if exponent.numerator < 0 else power
+    return root if exponent.numerator == 1 else replace(node, parts=(root, power))
+
+
+#: The denominators of exponents that are read as roots of roots.
+_ROOTS = {2, 4, 8, 16}
+
+
+def _fraction(node: SyntaxNode) -> Fraction | None:
+    """Return the number that an exponent of numbers alone is, None for any other."""
+    if node.kind == "number" and isinstance(node.value, Scalar) and node.value.is_constant:
+        return node.value.fraction()
+    parts = [_fraction(part) for part in node.parts]
+    if node.kind == "negative" and parts[0] is not None:
+        return -parts[0]
+    if node.kind == "quotient" and parts[0] is not None and parts[1]:
+        return parts[0] / parts[1]
+    return None
 
 
 def _require_known(part: SyntaxNode, source: Source) -> None:

@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from fractions import Fraction
 from itertools import combinations, islice, product
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.applications.audit.differences import as_matrix
 from symobs.applications.audit.equations import BEGIN, END, INSTANTS, krylov, text_of_value
-from symobs.exact import Matrix, Scalar, rank, roots_of
-from symobs.exact.algebraic.enclosure import near
-from symobs.exact.algebraic.real_algebraic import RealNumber, root_of_fraction, roots_of_scalar
+from symobs.exact import Matrix, Scalar, TooLarge, rank, roots_of
+from symobs.exact.algebraic.real_algebraic import RealNumber, roots_of_scalar
 from symobs.exact.algebraic.rounded_decimals import as_generator, decimals_in, polynomial_of
 from symobs.exact.core.generators import (
     derivative,
     function,
     functions_in,
-    identities,
-    roots_in,
     square_root,
     substitute,
-    symbols_in,
 )
 from symobs.exact.core.polynomial import product_of
 from symobs.exact.linear_algebra.elimination import reduced_echelon
@@ -38,7 +33,6 @@ from symobs.formula.tree import (
     Letter,
     Literal,
     Product,
-    Relation,
     Signal,
     Sum,
     agree,
@@ -46,11 +40,12 @@ from symobs.formula.tree import (
 )
 from symobs.formula.tree.arithmetic import add, scalar, times
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import BudgetExceeded, InputError
-from symobs.proof.certificate.claims import EVALUATION_ERRORS, verify
+from symobs.ground.errors import BudgetExceeded, InputError, OpenEquality
+from symobs.problem.agreement import equal_by_form, functions_agree, in_form_of
+from symobs.proof.certificate.claims import EVALUATION_ERRORS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from symobs.applications.audit.equations import Reading
     from symobs.formula.tree import Formula
@@ -250,50 +245,7 @@ class _Certified(Exact):
     """The exact kernel, where values are equal by a certificate."""
 
     def equal(self, left: Scalar | Matrix, right: Scalar | Matrix) -> bool:
-        meanings, relations = identities((left, right))
-        there = Environment(coefficients=meanings, relations=(*relations, *_products_of_roots((left, right))))
-        return bool(verify(Relation((Literal(left), Literal(right)), ("=",)), there)[0])
-
-
-def _products_of_roots(values: Sequence[Scalar | Matrix]) -> Iterator[Scalar]:
-    """Yield what vanishes because √u √v is √(u v) where they are real."""
-    found = dict.fromkeys(root for value in values for root in roots_in(value))
-    roots = [root for root in found if not functions_in([root.argument])][:_MOST_ROOTS]  # whose signs are looked at
-    parts = {(f,): f.argument for f in roots} | {(f, g): f.argument * g.argument for f, g in combinations(roots, 2)}
-    for h, (names, argument) in product(roots, parts.items()):
-        ratio = h.argument / argument
-        if h not in names and ratio.is_constant and ratio.fraction() > 0:
-            whole = product_of(Scalar.symbol(f.name) for f in names)
-            yield Scalar.symbol(h.name) - root_of_fraction(ratio.fraction(), 2) * whole
-
-
-#: Of more roots no products are compared.
-_MOST_ROOTS = 6
-
-
-def cannot_be_told_apart(left: Printed, right: Printed, signs: Mapping[str, str]) -> bool:
-    """Return whether unequal values with roots or functions agree at a point, so that they may be equal there and everywhere.
-
-    Roots and functions count as independent of each other, which they are not always: √(3 + 2√2) is 1 + √2.
-    """
-    values = [value for value in (left, right) if isinstance(value, (Scalar, Matrix))]
-    if len(values) < 2 or not functions_in(values):
-        return False
-    names = sorted(set().union(*map(symbols_in, values)))
-    point = {
-        name: Scalar.rational((2 * k + 3) * (-1 if signs.get(name, "") in _BELOW else 1), 2 * k + 11)
-        for k, name in enumerate(names)
-    }
-    try:
-        one, other = (as_matrix(substitute(value, point)) for value in values)
-        apart = [near(entry, _NEAR) for entry in (one - other).entries]
-    except (ArithmeticError, ValueError):
-        return False
-    return all(entry is not None and abs(entry) < Fraction(1, 2 ** (_NEAR - 1)) for entry in apart)
-
-
-#: Values that agree to so many bits are not said to be different; signs of what is drawn from below 0.
-_NEAR, _BELOW = 120, {"negative", "nonpositive"}
+        return equal_by_form(left, right)
 
 
 KERNEL = _Certified(Environment())
@@ -368,9 +320,28 @@ def _of_any_size(value: Printed) -> Printed:
     return Flexible(value) if isinstance(value, Scalar) and value.is_zero else value
 
 
-def equal(left: Printed, right: Printed) -> bool:
-    """Return whether two sides of one size are equal, by a certificate."""
-    return agree(left, right, KERNEL)
+def equal(left: Printed, right: Printed, signs: Mapping[str, str]) -> bool:
+    """Return whether two sides of one size are equal for letters with these signs; raises OpenEquality where it is open."""
+    if agree(left, right, KERNEL):
+        return True
+    if (
+        not isinstance(left, (Scalar, Matrix))
+        or type(left) is not type(right)
+        or decimals_in(left)
+        or decimals_in(right)
+    ):
+        return False
+    try:
+        return functions_agree(left, right, signs)
+    except TooLarge as error:
+        raise OpenEquality(str(error)) from error
+
+
+def in_form(printed: Printed, right: Printed, signs: Mapping[str, str]) -> Printed:
+    """Return a printed value whose entries are written as the right ones that they equal, so that the others alone differ."""
+    if not isinstance(printed, (Scalar, Matrix)) or not functions_in([printed]) or decimals_in(printed):
+        return printed
+    return in_form_of(printed, right, signs)[0]
 
 
 #: So many primes may stand behind each other: derivatives, or transposes.

@@ -11,7 +11,7 @@ from symobs.applications.batch.recheck import fault
 from symobs.ground.errors import InputError
 from symobs.pages.formats.json import answer_object, result_object
 from symobs.problem import parse, validate
-from symobs.problem.expect import mismatches
+from symobs.problem.expect import held_against
 from symobs.system.specification import desired_polynomial
 from symobs.tasks.result import render
 from symobs.tasks.result.output_methods import to_json
@@ -61,8 +61,8 @@ def problem_of(payload: Mapping[str, Any]) -> Problem:
 def _how_it_went(problem: Problem, results: tuple[Result, ...]) -> dict[str, Any]:
     """Return the status of a row: `no` for a mathematical no, or where what is expected is not met."""
     if problem.expect:
-        unmet = mismatches(problem.viewed(results), problem.expect)
-        return {"status": "no", "error": unmet} if unmet else {"status": "done"}
+        unmet, is_open = held_against(problem.viewed(results), problem.expect)
+        return {"status": "undecided" if is_open else "no", "error": unmet} if unmet else {"status": "done"}
     verdicts = {result.verdict for result in results}
     return {"status": "no" if "no" in verdicts else "undecided" if "undecided" in verdicts else "done"}
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import field
 from fractions import Fraction
@@ -108,7 +108,7 @@ def _apart(separator: re.Pattern[str], text: str) -> list[str]:
 
 
 #: A decimal number, not a part of a name or of a longer number.
-_DECIMAL = re.compile(
+DECIMAL = re.compile(
     r"(?<![A-Za-z0-9_.])(?:(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?|[0-9]+[eE][+-]?[0-9]{1,3})(?![A-Za-z0-9_.])"
 )
 
@@ -181,6 +181,29 @@ def verdict_of(text: str, *asked: str) -> str | None:
     return "no" if denied and word[denied.end() :] in having else VERDICTS.get(word)
 
 
+_BETWEEN = re.compile(r"\s*(?:[,;\n]|&&|\u2227|\b(?:and|und)\b)\s*")
+
+_OPERATOR = re.compile(r"!=|<=|>=|<|>")
+
+
+def as_conditions(value: Any) -> Any:
+    """Return the conditions of a text as a list: a != 1 and a != 2, or a != 1, 2."""
+    if isinstance(value, list):
+        return [each for entry in value for each in as_conditions(entry)]
+    if not isinstance(value, str):
+        return [value]
+    text = value.strip().strip("[]").replace("<>", "!=").replace("/=", "!=")
+    found: list[str] = []
+    for part in filter(None, _BETWEEN.split(text)):
+        left = _OPERATOR.split(found[-1])[0] if found else ""
+        found.append(part if _OPERATOR.search(part) or not left else f"{left.strip()} != {part}")
+    return found
+
+
+#: What stands between a value and the conditions under which it is that.
+_WHERE = re.compile(r"\s+(?:where|for|if|für|falls|wenn)\s+(?=.*(?:[<>]|!=))")
+
+
 def typed(text: str) -> str:
     """Return a text with the minus, the spaces and the byte order mark of ASCII."""
     return text.translate(_TYPED)
@@ -238,7 +261,7 @@ def has_decimals(value: Any) -> bool:
         return any(map(has_decimals, value.values()))
     if isinstance(value, list):
         return any(map(has_decimals, value))
-    return isinstance(value, str) and _DECIMAL.search(value) is not None
+    return isinstance(value, str) and DECIMAL.search(value) is not None
 
 
 def decimal_comma(value: Any) -> str:
@@ -262,7 +285,7 @@ def exact(value: Any) -> Any:
         return {key: exact(entry) for key, entry in value.items()}
     if isinstance(value, list):
         return [exact(entry) for entry in value]
-    return _DECIMAL.sub(lambda found: f"({Fraction(found[0])})", value) if isinstance(value, str) else value
+    return DECIMAL.sub(lambda found: f"({Fraction(found[0])})", value) if isinstance(value, str) else value
 
 
 def written_text(value: Any) -> str:
@@ -377,7 +400,7 @@ def _of_lines(text: str, where: str) -> Answer:
     Lines of conditions are the answer to a region that none names.  What is no relation is a line that cannot be read;
     raises `ProblemErrors` where there are no others.
     """
-    kept = _lines(text, where)
+    kept, exceptions = _without_exceptions(_lines(text, where))
     values: dict[str, Any] = {}
     steps: list[Step] = []
     conditions: list[str] = []
@@ -417,7 +440,32 @@ def _of_lines(text: str, where: str) -> Answer:
         raise ProblemErrors(tuple(errors))
     if conditions and not any("stable_if" in table for table in (values, values.get("stability_region", {}))):
         values["stable_if"] = conditions
+    if exceptions or conditions:
+        values.setdefault("conditions", exceptions or conditions)
     return Answer(values=values, steps=tuple(steps), loose=True)
+
+
+def _without_exceptions(lines: Iterable[tuple[int, str]]) -> tuple[list[tuple[int, str]], list[str]]:
+    """Return lines without the conditions under which a rank or a verdict is said to hold, and these conditions."""
+    kept: list[tuple[int, str]] = []
+    exceptions: list[str] = []
+    for number, line in lines:
+        alone, *under = _WHERE.split(line, maxsplit=1)
+        defined = definition(alone)
+        name, said = (defined.name, defined.value) if defined else ("verdict", alone)
+        is_yes = name.rpartition(".")[2] == "verdict" and verdict_of(said, *_PROPERTIES) == "yes"
+        if line.startswith("conditions"):
+            exceptions.append(line.removeprefix("conditions").lstrip(" :="))
+        elif under and (is_yes or (defined and name.rpartition(".")[2] in _OF_PARAMETERS)):
+            exceptions += under
+            kept.append((number, f"{name} = conditional" if is_yes else alone))
+        else:
+            kept.append((number, line))
+    return kept, exceptions
+
+
+#: What is so for some values of the parameters.
+_OF_PARAMETERS = {"rank", "verdict"}
 
 
 def _is_relation(name: str, value: str) -> bool:

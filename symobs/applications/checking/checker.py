@@ -31,7 +31,7 @@ from symobs.formula.convention import Convention, convention_named
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError, UsageError
 from symobs.problem import MAX_BYTES, Problem, is_text, read, text_of
-from symobs.problem.expect import available, factored_table, found_in, shown_value
+from symobs.problem.expect import available, factored_table, found_in, names_of, shown_value
 from symobs.problem.file_tables import Errors
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.result import Result
@@ -229,7 +229,7 @@ def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Jud
         design = judgement.right.design_of(judged.name)
         turned = view.standard(judged.letter)[1] < 0
         right = design.answer[design.letter]
-        rounded = right is not None and rounds(judged, right, turned=turned)
+        rounded = right is not None and rounds(view, judged, right, names_of(view), None)
         other = other_polynomial(judgement.right, judged.name)
         return explain_gain(design, judged.value, judged.letter, other, turned=turned, rounded=rounded)
     right = _exact((judgement.right if judged.there is None else judged.there).fields.get(judged.name))
@@ -521,6 +521,7 @@ def _given(
     found: dict[str, dict[str, Any]] = {view.task: {} for view in views}
     errors: list[SymobsError] = []
     tasks = {view.task: view for view in views}
+    with_exceptions = {view.task for view, name in asked if name == "conditions"}
     for key, value in answer.values.items():
         if key in tasks and isinstance(value, Mapping):
             known = available(tasks[key])
@@ -534,6 +535,8 @@ def _given(
             continue
         having = [(view.task, field_called(view.result, key)) for view in views]
         having = [(task, field) for task, field in having if field in available(tasks[task])]
+        if key == "conditions" and answer.loose:  # conditions in a text are the answer where they are asked for
+            having = [(task, field) for task, field in having if task in with_exceptions]
         for task, field in having:
             if field not in found[task] and not _is_empty(value):
                 found[task][field] = value

@@ -120,9 +120,7 @@ class LineAuditor(EquationAuditor):
         wrong = [pair for pair in pairwise(members) if not self.true(*pair)]
         for pair in wrong:
             with suppress(Misfit):
-                sides = common(*(self._value(side, reading) for side in pair))
-                if not equal(*sides):  # else the signs of roots are why it is not true
-                    self.require_told_apart(*sides)
+                equal(*common(*(self._value(side, reading) for side in pair)), self.symbols)  # raises where it is open
         return not wrong
 
     def defined(self, entry: PrintedEntry) -> tuple[str, Scalar | Matrix] | None:

@@ -208,7 +208,17 @@ def _quotient(found: re.Match[str]) -> str:
 
 
 def _entries(row: str) -> list[str]:
-    return [entry.strip() for entry in (row.split(",") if "," in row else row.split())]
+    return [entry.strip() for entry in (_split(",", row) if "," in row else _split(r"\s+", row.strip()))]
+
+
+def _split(separator: str, text: str) -> list[str]:
+    """Return the parts of a text between separators that stand in no parentheses."""
+    parts, start = [], 0
+    for found in re.finditer(separator, text):
+        if text.count("(", 0, found.start()) == text.count(")", 0, found.start()):
+            parts.append(text[start : found.start()])
+            start = found.end()
+    return [*parts, text[start:]]
 
 
 def _rows(matrix: str) -> list[list[str]]:
@@ -280,10 +290,10 @@ def with_commas(value: Any, columns: int) -> Any:
     lines = [row.strip() for row in value.strip()[1:-1].split(";")]
     if columns == 1 and any(re.search(r"[\w)]\s+[^\W\d]", line) for line in lines):
         return _written([[f"({line})"] for line in lines])
-    rows = [re.split(r"\s{2,}", line) for line in lines]
+    rows = [_split(r"\s{2,}", line) for line in lines]
     if {len(row) for row in rows} == {columns}:
         return _written(rows)
-    if {len(line.split()) for line in lines} == {columns}:
+    if {len(_split(r"\s+", line)) for line in lines} == {columns}:
         return value
     parted = [_parted(line, columns) for line in lines]
     if max(map(len, parted)) > 1 and all(parted):
@@ -301,7 +311,7 @@ def _parted(line: str, columns: int) -> list[list[str]]:
 
     Where every blank parts two entries there is no other way.
     """
-    words = re.findall(r"(?:\([^()]*\)|[^\s()])+", line)
+    words = _split(r"\s+", line)
     factors = [""]
     for word in words:  # a sign between blanks stands in a sum
         if word in {"+", "-", "*", "/"} or factors[-1].endswith((" + ", " - ", " * ", " / ")):

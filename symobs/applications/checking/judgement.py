@@ -6,11 +6,11 @@ import re
 from contextlib import suppress
 from dataclasses import field, replace
 from itertools import product
-from math import floor, log10
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.checking.answers import (
     VERDICTS,
+    as_conditions,
     as_kernel,
     as_list,
     as_value,
@@ -26,14 +26,16 @@ from symobs.applications.checking.answers import (
 )
 from symobs.applications.checking.handwriting import in_letters, with_commas, without_and
 from symobs.applications.checking.regions import region_verdict
+from symobs.applications.checking.rounded import entries_are_right, in_enough_digits, is_as_stable, poles_are_right
 from symobs.exact import Complex, Matrix, Root, Scalar, TooLarge, kernel
-from symobs.exact.algebraic.root_location import complex_roots
+from symobs.exact.core.generators import functions_in
 from symobs.exact.linear_algebra.transfer_function import pole_and_zero_polynomial
 from symobs.formula.expression import parse_matrix
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, NotShown, ProblemErrors, SymobsError, UnknownName
-from symobs.problem.expect import agrees, found_in, is_digits, met, names_of
+from symobs.problem.agreement import DIFFERENT, EQUAL, OPEN, in_form_of
+from symobs.problem.expect import digits_of, found_in, is_digits, met, names_of
 from symobs.tasks.analysis.realization.canonical_form import CanonicalForm
 from symobs.tasks.analysis.realization.kalman_decomposition import Decomposition
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
@@ -56,6 +58,8 @@ def as_asked(view: ResultInConvention, letter: str, value: Any) -> Any:
     if isinstance(value, str) and (inside := value_of(letter, value)) != value:
         value = as_value(inside)
     name = view.standard(letter)[0]
+    if name == "conditions":
+        return as_conditions(value)
     if isinstance(value, str):
         value = in_letters(value, *known_names(view))
     elif isinstance(value, list):
@@ -109,9 +113,13 @@ OF_THE_PLANT = ("A", "B", "C", "D")
 
 
 def asked_of(result: Result) -> tuple[str, ...]:
-    """Return the fields that a task asks for; the verdict where there is nothing else to be found."""
+    """Return the fields that a task asks for; the verdict where there is nothing else to be found.
+
+    Where it depends on parameters whether something is so, a rank or a verdict alone does not say for which.
+    """
     there = tuple(name for name in result.answered_by if exists(result, name) or name in result.decimals)
-    return there or ("verdict",)
+    depends = result.verdict == "conditional" and {*there} <= {"rank"} and bool(result.holds_where)
+    return (*(there or ("verdict",)), *(("conditions",) if depends else ()))
 
 
 def field_called(result: Result, name: str) -> str:
@@ -437,6 +445,11 @@ class _Task:
     #: Whether one of two gains is given that are not unique, and right or wrong together.
     is_half: bool = False
 
+    @property
+    def signs(self) -> Mapping[str, str]:
+        """The declared signs."""
+        return self.view.plant.symbols.signs
+
 
 def judge_task(
     view: ResultInConvention, given: Mapping[str, Any], symbols: tuple[str, ...], marking: Marking
@@ -512,13 +525,19 @@ def _gain(task: _Task, part: Judged) -> Judged:
         rows, columns = (f"{a}x{b}" for a, b in (shape, value.shape))
         task.wrong = (*task.wrong, name)
         return replace(part, reason=f"{letter} is {rows} here, yours is {columns}")
+    own = task.right.fields.get(name)
+    known, why = DIFFERENT, ""
+    if own is not None:
+        value, known, why = in_form_of(value, own, task.signs)
+        part = replace(part, value=value)
     task.gains[name] = value
     try:
-        own = task.right.fields.get(name)
-        other = task.right if value == own else task.right.with_gains({name: value})
+        other = task.right if known == EQUAL else task.right.with_gains({name: value})
     except CertificateRejected as rejected:
         if task.marking.decimals == "accept" and _is_rounded(task, part, value):
             return replace(part, verdict="right", hints=("rounded",))
+        if known == OPEN:
+            return replace(part, verdict="undecided", reason=why)
         if task.is_half:
             return replace(
                 part, verdict="undecided", reason=f"{' and '.join(task.right.gains)} are right together: give both"
@@ -528,8 +547,8 @@ def _gain(task: _Task, part: Judged) -> Judged:
         return replace(part, claims=((str(claim), False, "exact"),) if claim else ())
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
-    known = {condition.expression for condition in task.right.holds_where}
-    new = [c.expression for c in other.holds_where if c.expression not in known]
+    before = {condition.expression for condition in task.right.holds_where}
+    new = [c.expression for c in other.holds_where if c.expression not in before]
     hints = (f"not defined where {' or '.join(f'{value} = 0' for value in new)}",) if new else ()
     task.right = other
     claims = tuple((c.claim, True, c.how) for c in other.all_certificates[:1])
@@ -538,53 +557,34 @@ def _gain(task: _Task, part: Judged) -> Judged:
 
 def _gain_in(task: _Task, part: Judged) -> Matrix:
     """Return a gain with its sign in the standard convention."""
-    read = parse_matrix(part.given, task.names)
+    read = parse_matrix(part.given, task.names, functions=True)
     return -read if task.view.standard(part.letter)[1] < 0 else read
 
 
-def rounds(part: Judged, right: Matrix, *, turned: bool) -> bool:
-    """Return whether the decimals of a gain round the right one; `turned` says that the letter denotes its negative."""
+def rounds(
+    view: ResultInConvention, part: Judged, right: Matrix | Scalar | None, names: Any, digits: int | None
+) -> bool:
+    """Return whether decimals of a gain round the right one, which is given in the standard convention."""
+    if not has_decimals(part.given):
+        return False
+    turned = right is not None and view.standard(part.letter)[1] < 0
     try:
-        read = parse_matrix(part.given, None, rounding=True)
+        return entries_are_right(view, part.letter, part.given, -right if turned else right, names, digits)  # type: ignore[operator]
     except SymobsError:
         return False
-    return read.shape == right.shape and read != part.value and agrees(-read if turned else read, right)
 
 
 def _is_rounded(task: _Task, part: Judged, value: Matrix) -> bool:
-    """Return whether decimals stand for a right gain: its entries, or the poles placed, are right to the digits asked for.
+    """Return whether decimals stand for a right gain, whose loop is stable as it should be.
 
-    Without a number of digits the entries are to be those of the right gain, correctly rounded.
+    Its entries, or the poles placed, are right to the digits asked for; without a number of them the entries are.
     """
     design, digits = task.right.design_of(part.name), task.marking.digits
-    right, polynomial = design.answer[design.letter], design.answer["polynomial"]
-    if not has_decimals(part.given) or right is None:
-        return False
-    if digits is None:
-        return rounds(part, right, turned=task.view.standard(part.letter)[1] < 0)
-    if value.names or right.names or polynomial.names - {design.plant.variable}:
-        return False
-    pairs = zip(value.entries, right.entries, strict=True)
-    if all(_is_near(complex(one.fraction()), complex(other.fraction()), digits) for one, other in pairs):
-        return True
-    placed = _roots(type(design).of_given(design.plant, value).answer["polynomial"], design.plant.variable)
-    for pole in _roots(polynomial, design.plant.variable):
-        nearest = min(placed, key=lambda root: abs(root - pole))
-        if not _is_near(nearest, pole, digits):
-            return False
-        placed.remove(nearest)
-    return True
-
-
-def _is_near(value: complex, right: complex, digits: int) -> bool:
-    """Return whether a value is right to so many significant digits; beside 0 to so many places."""
-    power = floor(log10(abs(right))) if right else 0
-    return abs(value - right) <= 10.0 ** (power + 1 - digits) / 2
-
-
-def _roots(polynomial: Scalar, variable: str) -> list[complex]:
-    found = complex_roots([entry.fraction() for entry in polynomial.coefficients(variable)])
-    return [complex(float(real), float(imaginary)) for real, imaginary in found]
+    right = task.right.fields[part.name]
+    near = rounds(task.view, part, right, task.names, digits)
+    if not near and digits is not None and has_decimals(part.given):
+        near = poles_are_right(design, value, digits)
+    return near and is_as_stable(task.right, part.name, value)
 
 
 def _together(task: _Task, right: Any, given: Mapping[str, Judged]) -> Any:
@@ -615,11 +615,13 @@ def _judged(task: _Task, part: Judged) -> Judged:
     """Return the verdict on a value: against the right gains, then against the student's own."""
     name, given = part.name, part.given
     in_digits = is_digits(task.right.fields.get(name))
-    if in_digits or (not exists(task.right, name) and name in task.right.decimals):  # digits answer: no closed form
+    if in_digits:
         try:
             return replace(part, verdict="right", hints=("rounded",)) if _met(task, task.right, part, given) else part
         except SymobsError as unread:
             return _unreadable(part, unread)
+    if not exists(task.right, name) and name in task.right.decimals:  # digits answer: no closed form
+        return _in_digits(task, part)
     if not exists(task.right, name):
         return replace(part, reason=f"there is no {part.letter} here")
     if (task.view.task, name) == ("stability_region", "stable_if"):
@@ -636,7 +638,7 @@ def _judged(task: _Task, part: Judged) -> Judged:
     if is_of_numbers and has_two_readings(given):
         return _unreadable(part, two_readings())
     try:
-        part = replace(part, value=_value(task, part))
+        part = replace(part, value=_in_form(task, _value(task, part), right))
         found = _holds(task, task.right, part)
         if found is not None:
             return replace(part, verdict="right", hints=found)
@@ -644,7 +646,7 @@ def _judged(task: _Task, part: Judged) -> Judged:
             return replace(part, verdict="follows", hints=found, origins=task.wrong)
         if name == "F" and not task.gains and not task.wrong and closes_the_loop(task.right, part.value):
             return replace(part, verdict="right", hints=("another compensator with the same closed-loop polynomial",))
-        rounded = has_decimals(given) and _met(task, task.right, part, given)
+        rounded = _is_right_rounding(task, part, right)
         if rounded and task.marking.decimals == "accept":
             return replace(part, verdict="right", hints=("rounded",))
         if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape):
@@ -658,6 +660,40 @@ def _judged(task: _Task, part: Judged) -> Judged:
     return replace(part, rounded=rounded)
 
 
+def _in_digits(task: _Task, part: Judged) -> Judged:
+    """Return the verdict on a value of which the right one has no closed form: its digits have to be right."""
+    try:
+        if not entries_are_right(task.view, part.letter, part.given, None, task.names, task.marking.digits):
+            return part
+        value = parse_matrix(part.given, task.names, functions=True)
+        digits = digits_of(task.view, part.letter, _DIGITS_OF_LOOP)
+    except UNDECIDED as error:
+        return replace(part, verdict="undecided", reason=str(error))
+    except SymobsError as error:
+        return _unreadable(part, error)
+    if task.view.standard(part.letter)[1] < 0:
+        value, digits = -value, digits and -digits
+    if not is_as_stable(task.right, part.name, value, digits):
+        return replace(part, reason=f"the loop of this {part.letter} is not stable")
+    return replace(part, verdict="right", hints=("rounded",))
+
+
+#: The digits of a right gain by which its loop is seen to be stable.
+_DIGITS_OF_LOOP = 30
+
+
+def _is_right_rounding(task: _Task, part: Judged, right: Any) -> bool:
+    """Return whether decimals are those of the right value, and a gain among them keeps its loop stable."""
+    if not has_decimals(part.given):
+        return False
+    digits, turned = task.marking.digits, task.view.standard(part.letter)[1] < 0
+    if not isinstance(right, (Matrix, Scalar)) or task.right.in_time or task.right.plant.is_time_varying:
+        return _met(task, task.right, part, in_enough_digits(part.given, digits))
+    if not entries_are_right(task.view, part.letter, part.given, -right if turned else right, task.names, digits):
+        return False
+    return not isinstance(part.value, Matrix) or is_as_stable(task.right, part.name, part.value * (-1 if turned else 1))
+
+
 def _value(task: _Task, part: Judged) -> Matrix | Scalar | None:
     """Return the value of a part as a matrix or a number."""
     variable = task.view.argument
@@ -666,19 +702,32 @@ def _value(task: _Task, part: Judged) -> Matrix | Scalar | None:
     return read_like(found_in(task.right, part.name), part.given, task.names, variable, part.letter)
 
 
+def _in_form(task: _Task, value: Matrix | Scalar | None, right: Any) -> Matrix | Scalar | None:
+    """Return a value whose entries are written as the right ones that they equal, so that the others alone are wrong."""
+    if not isinstance(value, (Matrix, Scalar)) or not isinstance(right, (Matrix, Scalar)):
+        return value
+    return in_form_of(value, right, task.signs)[0] if functions_in([value, right]) else value
+
+
 def _holds(task: _Task, result: Result, part: Judged) -> tuple[str, ...] | None:
     """Return the hints on a value that is right for a result, None where it is not."""
     if part.name in result.claimed:
         matrix = Matrix.of([[part.value]]) if isinstance(part.value, Scalar) else part.value
         assert isinstance(matrix, Matrix)  # noqa: S101 - the right value exists, and is read like it
+        own = result.fields[part.name]
+        matrix, known, why = in_form_of(matrix, own, task.signs)
         try:
-            found = result.with_answer(part.name, matrix)
+            found = result if known == EQUAL else result.with_answer(part.name, matrix)
         except CertificateRejected:
+            if known == OPEN:
+                raise TooLarge(why) from None
             return None
         task.right = found if result is task.right else task.right
         return ()
     if _met(task, result, part, exact(part.given)):
         return ()
+    if part.name == "conditions" and isinstance(part.given, list):  # without which there is no plant may go unsaid
+        return () if _met(task, result, part, [*exact(part.given), *map(str, result.domain)]) else None
     if part.name in _EITHER:
         other, said = _EITHER[part.name]
         if exists(result, other) and _met(task, result, replace(part, name=other), exact(part.given)):

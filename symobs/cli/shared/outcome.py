@@ -167,7 +167,7 @@ def solved(found: Any, options: PageOptions, report_progress: Progress, *, only_
     expected answers of the file's other tasks are ignored.  `report_progress` is called with each task begun, and with
     the outcome that is kept if the work is ended.
     """
-    from symobs.problem.expect import applicable, mismatches  # noqa: PLC0415
+    from symobs.problem.expect import applicable, held_against  # noqa: PLC0415
     from symobs.tasks.result import render  # noqa: PLC0415
 
     format_name, target, plot, bibliography = options.format_name, options.target, options.plot, options.bibliography
@@ -195,7 +195,7 @@ def solved(found: Any, options: PageOptions, report_progress: Progress, *, only_
         return Outcome(((rendered(done), target),) if done and shows_parts else (), (str(error),), EXIT_UNDECIDED)
     viewed = found.viewed(results)
     expect = applicable(viewed, found.expect) if only_some_tasks else found.expect
-    unmet = mismatches(viewed, expect)
+    unmet, is_open = held_against(viewed, expect)
     if options.settings:
         results = _at(results, options.settings)
     report_progress("the page")
@@ -213,7 +213,7 @@ def solved(found: Any, options: PageOptions, report_progress: Progress, *, only_
         except UsageError as error:  # there is none: the result stands all the same
             return Outcome(tuple(outputs), (str(error),), error.exit_code)
     if expect:
-        return Outcome(tuple(outputs), tuple(unmet), EXIT_NO if unmet else 0)
+        return Outcome(tuple(outputs), tuple(unmet), EXIT_UNDECIDED if is_open else EXIT_NO if unmet else 0)
     verdicts = {result.verdict for result in results}
     messages = [f"{result.task}: {result.verdict}" for result in results if result.verdict in {"no", "undecided"}]
     code = EXIT_NO if "no" in verdicts else EXIT_UNDECIDED if "undecided" in verdicts else 0

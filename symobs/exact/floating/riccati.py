@@ -24,6 +24,8 @@ from symobs.exact.floating.riccati_check import (
 
 #: Bits that are tried in turn, and the significant digits that are written.
 _BITS, _DIGITS = (128, 256, 512, 1024), 15
+#: An enclosure has this share of the bits of the work for its digits.
+_BITS_A_DIGIT = 8
 #: The sign converges quadratically, from a scaled matrix in about ten steps; near the boundary it takes more.
 _STEPS = 60
 
@@ -51,12 +53,12 @@ def _half_unit(text: str) -> Fraction:
     return Fraction(1, 2 * 10 ** len(text.partition(".")[2]))
 
 
-def enclosed_solution(regulator: Regulator) -> Enclosure | None:
-    """Return digits of P and K that can be proved; None where no precision that is tried suffices."""
-    for bits in _BITS:
+def enclosed_solution(regulator: Regulator, digits: int = _DIGITS) -> Enclosure | None:
+    """Return so many digits of P and K that can be proved; None where no precision that is tried suffices."""
+    for bits in (tried + _BITS_A_DIGIT * (digits - _DIGITS) for tried in _BITS):
         with Precision(bits):
             try:
-                found = _found(regulator, bits)
+                found = _found(regulator, bits, digits)
             except (Uncertain, ZeroDivisionError):
                 continue
         if found is not None:
@@ -64,7 +66,7 @@ def enclosed_solution(regulator: Regulator) -> Enclosure | None:
     return None
 
 
-def _found(regulator: Regulator, bits: int) -> Enclosure | None:
+def _found(regulator: Regulator, bits: int, digits: int) -> Enclosure | None:
     X = _symmetric(_start(regulator, bits))
     nothing = arb_mat(X.nrows(), X.nrows())
     size = float(_largest(X)) or 1.0
@@ -81,8 +83,8 @@ def _found(regulator: Regulator, bits: int) -> Enclosure | None:
     return Enclosure(
         Matrix.of([[_rational(X[i, j]) for j in range(X.ncols())] for i in range(X.nrows())]),
         _rational(radius),
-        _written(P),
-        _written(gain(regulator, P)),
+        _written(P, digits),
+        _written(gain(regulator, P), digits),
         bits,
     )
 
@@ -128,16 +130,17 @@ def _rational(value: arb) -> Fraction:
     return Fraction(int(found.p), int(found.q))
 
 
-def _written(value: arb_mat) -> tuple[tuple[str, ...], ...]:
-    """Return the entries in decimals, with as many digits as are certain."""
+def _written(value: arb_mat, digits: int) -> tuple[tuple[str, ...], ...]:
+    """Return the entries in decimals, with as many digits as are certain, and no more than these."""
     entries = [value[i, j] for i in range(value.nrows()) for j in range(value.ncols())]
     largest = max((float(abs(entry).upper()) for entry in entries if not entry.contains(0)), default=1.0)
-    return tuple(tuple(_decimal(value[i, j], largest) for j in range(value.ncols())) for i in range(value.nrows()))
+    rows = ([value[i, j] for j in range(value.ncols())] for i in range(value.nrows()))
+    return tuple(tuple(_decimal(entry, largest, digits) for entry in row) for row in rows)
 
 
-def _decimal(value: arb, largest: float) -> str:
+def _decimal(value: arb, largest: float, most: int) -> str:
     size = Fraction(float(abs(value).upper()) if not value.contains(0) else largest)
-    places = _DIGITS
+    places = most
     while size < 1:
         size, places = size * 10, places + 1
     while size >= 10:

@@ -6,13 +6,14 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from symobs.exact.algebraic.enclosure import is_number, near, sign_of_number
+from symobs.exact.core.matrix import Matrix
+from symobs.exact.core.scalar import Scalar
 from symobs.exact.numerals.rounded_roots import are_rounded_roots, is_correctly_written, is_exact, is_zero, root_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from symobs.exact.algebraic.polynomial_roots import Root
-    from symobs.exact.core.scalar import Scalar
     from symobs.exact.numerals.rounded_roots import Bounds, RootText
 
 
@@ -36,6 +37,26 @@ def significant(value: Scalar, digits: int) -> str | None:
         exact = _exact(number, digits)
         return exact if exact is not None and (_is_short(number, digits) or _room(exact) <= _room(rounded)) else rounded
     return next(_roundings(value, digits), None)
+
+
+#: Digits to which irrational data are rounded where only rational ones are treated.
+DATA_DIGITS = 15
+
+
+def in_digits(matrix: Matrix) -> Matrix | None:
+    """Return a matrix of numbers, the irrational ones correctly rounded; None where an entry is no number that can be."""
+    entries = [entry if entry.is_constant else _in_digits(entry) for entry in matrix.entries]
+    rows, columns = matrix.shape
+    if any(entry is None for entry in entries):
+        return None
+    found = [entry for entry in entries if entry is not None]
+    return Matrix.of([found[row * columns : (row + 1) * columns] for row in range(rows)], columns)
+
+
+def _in_digits(entry: Scalar) -> Scalar | None:
+    sign = sign_of_number(entry) if is_number(entry) else ""
+    text = significant(-entry if sign == "negative" else entry, DATA_DIGITS) if sign else None
+    return None if text is None else Scalar.of(Fraction(text) * (-1 if sign == "negative" else 1))
 
 
 def _roundings(value: Scalar, digits: int) -> Iterator[str]:

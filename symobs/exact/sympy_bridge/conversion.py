@@ -22,7 +22,7 @@ from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.ground.errors import InexactInput, InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.exact.algebraic.polynomial_roots import Factored, Root
 
@@ -208,10 +208,11 @@ def root_to_sympy(root: Root, objects: Mapping[str, Any]) -> sympy.Expr:
     return scalar_to_sympy(root.centre, objects) + offset
 
 
-def relation_to_sympy(left: Scalar, operator: str, objects: Mapping[str, Any]) -> Any:
-    """Return `left operator 0` as a SymPy relation, not evaluated away."""
+def relation_to_sympy(parts: Sequence[Scalar], operator: str, objects: Mapping[str, Any]) -> Any:
+    """Return that one of the parts is `operator 0` as a SymPy relation, not evaluated away."""
     kinds = {"!=": sympy.Ne, "==": sympy.Eq, ">": sympy.Gt, ">=": sympy.Ge, "<": sympy.Lt, "<=": sympy.Le}
-    return kinds[operator](scalar_to_sympy(left, objects), 0, evaluate=False)
+    found = [kinds[operator](scalar_to_sympy(left, objects), 0, evaluate=False) for left in parts]
+    return found[0] if len(found) == 1 else sympy.Or(*found, evaluate=False)
 
 
 def complex_from_sympy(expression: Any, where: str, *, roots: bool = False) -> Complex:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from itertools import chain
+from math import floor, prod
 from operator import add, mul, sub, truediv
 from typing import TYPE_CHECKING, Any
 
@@ -26,12 +27,13 @@ from symobs.formula.expression.source import (
     work,
 )
 from symobs.formula.expression.syntax import operands_first, parse
-from symobs.formula.expression.tokenizer import Tokeniser
+from symobs.formula.expression.tokenizer import LEADING_ZERO, Tokeniser
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from fractions import Fraction
     from typing import TypeAlias
 
     from symobs.formula.expression.names import Scope
@@ -70,7 +72,7 @@ _MOST_NAMES = 100
 def plain_rows(text: str, scope: Scope) -> tuple[list[list[Number]], bool] | None:
     """Return rows of entries, and whether they are in brackets; None if the text is not plain."""
     inside = text.strip(" ")
-    if scope.rounding and "." in inside:
+    if (scope.rounding and "." in inside) or LEADING_ZERO.search(inside):
         return None
     bracketed = inside[:1] == "[" and inside[-1:] == "]"
     if bracketed:
@@ -198,11 +200,12 @@ def _degree_of_root(base: Scalar, exponent: Number) -> int:
     return degree if 1 < degree <= _MOST_DEGREE and abs(exponent.fraction().numerator) <= _MOST_DEGREE else 0
 
 
-def _halves(exponent: Number) -> int:
-    """Return p where an exponent is p/2 with an odd p, else 0."""
-    if not isinstance(exponent, Scalar) or not exponent.is_constant or exponent.fraction().denominator != 2:
+def _times_halved(exponent: Number) -> int:
+    """Return n where an exponent is p/2ⁿ with an odd p and n from 1 to 4, else 0."""
+    if not isinstance(exponent, Scalar) or not exponent.is_constant:
         return 0
-    return exponent.fraction().numerator
+    denominator = exponent.fraction().denominator
+    return denominator.bit_length() - 1 if denominator in {2, 4, 8, 16} else 0
 
 
 class Evaluator:
@@ -273,11 +276,11 @@ class Evaluator:
         return self._combined(self._number(left), place, self._number(right), sign)
 
     def _power(self, base: Number, place: int, value: Number) -> Number:
+        value = written_out(value) if isinstance(value, Scalar) else value  # an exponent is exact
         if self.functions and isinstance(base, Scalar) and (degree := _degree_of_root(base, value)):
             return root_of_fraction(base.fraction(), degree) ** int(Complex.of(value).real.fraction() * degree)
-        if self.functions and isinstance(base, Scalar) and not base.is_constant and (half := _halves(value)):
-            whole = self._power(base, place, Scalar.of((half - 1) // 2))  # x^(q + 1/2) is x^q times the root of x
-            return self._combined(whole, place, self._function("sqrt", place, base), "*")
+        if self.functions and isinstance(base, Scalar) and not base.is_constant and (times := _times_halved(value)):
+            return self._power_of_root(base, place, Complex.of(value).real.fraction(), times)
         if self.instant and isinstance(value, Scalar) and self.instant in value.names:
             return self._power_in_steps(base, place, value)
         exponent = self._exponent(value, place)
@@ -287,6 +290,16 @@ class Evaluator:
             self._require_nonzero(base, place)
         self._spend(power_size(base, exponent), place)
         return base**exponent
+
+    def _power_of_root(self, base: Scalar, place: int, exponent: Fraction, times: int) -> Number:
+        """Return x^(p/2ⁿ) as x to a whole power, times powers of √x, √√x and so on."""
+        found, root = self._power(base, place, Scalar.of(floor(exponent))), base
+        binary = int((exponent - floor(exponent)) * 2**times)
+        for step in range(1, times + 1):
+            root = self._function("sqrt", place, root)
+            if binary >> (times - step) & 1:
+                found = self._combined(found, place, root, "*")
+        return found
 
     def _power_in_steps(self, base: Number, place: int, value: Scalar) -> Number:
         """Return λ to the power m k + n, with numbers m and n, as a function of k."""
@@ -328,7 +341,7 @@ class Evaluator:
         instead = "sqrt of a rational number is possible; for other constants declare a symbol"
         if not self.roots:
             raise self.source.error("sqrt of this has no exact value here", place, instead)
-        return generators.square_root(self._with_one_root(place, number))
+        return self._square_root(place, number)
 
     def _function(self, name: str, place: int, argument: Number) -> Scalar:
         if isinstance(argument, Complex):
@@ -339,20 +352,44 @@ class Evaluator:
             if argument.is_zero:
                 return argument
             known = root_in_field(argument) if is_number(argument) else None
-            return generators.square_root(self._with_one_root(place, argument)) if known is None else known
+            return self._square_root(place, argument) if known is None else known
         except generators.NotWritten as error:
             raise self.source.error(str(error), place, "declare a symbol for it") from None
         except ZeroDivisionError:
             fault = "sqrt of a negative number" if name == "sqrt" else f"{name} has no value there"
             raise self.source.error(fault, place, "write what is real") from None
 
-    def _with_one_root(self, place: int, radicand: Scalar) -> Scalar:
-        """Return the radicand; sqrt(a^2) is a or -a, decided by the sign of a."""
-        for factor, power in radicand.factors()[1]:
-            if power % 4 == 2 and self.names.get(str(factor)) not in {"positive", "nonnegative"}:
+    def _square_root(self, place: int, radicand: Scalar) -> Scalar:
+        """Return the root that is not negative: sqrt(a^2) is a or -a, decided by the signs of what stands in a."""
+        unit, factors = radicand.factors()
+        front = 1
+        odd = [factor for factor, power in factors if power % 2]
+        for factor, power in factors:
+            if power % 4 < 2:  # an even power of it stands before the root
+                continue
+            side = self._side(factor)
+            if odd == [factor] and unit.is_constant:  # which is real for one sign of it alone
+                side = 1 if unit.fraction() > 0 else -1
+            if not side:
                 message = f"sqrt of a square: {shown(str(factor))} may be negative"
                 raise self.source.error(message, place, "write it without sqrt, or declare the symbol positive")
-        return radicand
+            front *= side
+        return generators.square_root(radicand) * front
+
+    def _side(self, factor: Scalar) -> int:
+        """Return the side of 0 on which a factor lies by the signs of its terms: 1, -1, or 0 where they do not say."""
+        sides = set()
+        for coefficient, powers in factor.terms():
+            odd = [self._side_of(name) for name, power in powers if power % 2]
+            sides.add(prod(odd, start=1 if coefficient > 0 else -1))
+        return sides.pop() if len(sides) == 1 else 0
+
+    def _side_of(self, name: str) -> int:
+        found = generators.function_named(name)
+        if found is not None:
+            return int(found.kind in {"sqrt", "exp", "cosh"})
+        sign = self.names.get(name)
+        return int(sign in {"positive", "nonnegative"}) - int(sign in {"negative", "nonpositive"})
 
     def _number(self, entry: Entry) -> Number:
         if isinstance(entry, MatrixRows):

@@ -155,6 +155,10 @@ def _context_of(texts: Iterable[str], variable: str | None = None) -> Field:
     return Field.of(fit.union([variable] if variable and fit else ()) if len(fit) <= MOST_NAMES else ())
 
 
+#: A 0 before another digit where a number begins: what stands behind a decimal comma.
+LEADING_ZERO = re.compile(r"(?<![A-Za-z0-9_.])0[0-9]")
+
+
 class Tokeniser:
     """A tokeniser of one text; each VALUE has its exact number.
 
@@ -219,6 +223,7 @@ class Tokeniser:
         self.spaced = False
         match kind:
             case "NUMBER":
+                self._refuse_leading_zero(text, at)
                 self._add("VALUE", text, at, self._decimal(text, at))
             case "NAME":
                 self._name(text if text.isascii() else self._spelt(text), at, at + len(text))
@@ -331,6 +336,14 @@ class Tokeniser:
             return decimal
         digits, shift = int(whole + decimals), int(power or 0) - len(decimals)
         return Scalar.of(digits * 10**shift) if shift >= 0 else Scalar.rational(digits, 10**-shift)
+
+    def _refuse_leading_zero(self, text: str, at: int) -> None:
+        """Raise ExpressionError for [0,05] and [007]: in brackets, and behind a comma, it is a decimal that is meant."""
+        whole = re.search(r"([0-9]+), *$", self.text[:at])
+        if LEADING_ZERO.match(text) and (self.open or whole):
+            message = f'a number does not begin with 0: "{text}"'
+            instead = f"decimals have a point: {whole[1]}.{text}" if whole else f"write {text.lstrip('0') or '0'}"
+            raise self.source.error(message, at, instead)
 
     def _raised(self, power: str, at: int) -> None:
         """Add a power that is written above the line."""

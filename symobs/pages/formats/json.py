@@ -8,6 +8,7 @@ from datetime import date
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Matrix
+from symobs.exact.numerals.written_digits import DATA_DIGITS
 from symobs.formula.convention import STANDARD, Convention
 from symobs.pages.page.sheet import decimal_of
 from symobs.tasks.result import Case, Result, output_format
@@ -155,6 +156,7 @@ def _plant_object(plant: StateSpace) -> dict[str, Any]:
         point = {name: str(value) for name, value in given.equilibrium}
         data |= {**functions, "states": [*given.states], "inputs": [*given.inputs], "equilibrium": point}
     dt = plant.dt if isinstance(plant.dt, int) else str(plant.dt)
+    data |= {"rounded_to": DATA_DIGITS} if plant.is_rounded else {}
     return {**data, "dt": dt, "symbols": signs(plant, [plant.polynomial])}
 
 

@@ -53,7 +53,7 @@ from symobs.proof.derivation.steps import (
     Step,
     Tabulate,
 )
-from symobs.system.conditions import solved
+from symobs.system.conditions import SumOfSquares, solved
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -161,6 +161,14 @@ def relation(*members: Member | str) -> Relation:
             operators.append("=")
         formulas.append(formula_of(member))
     return Relation(tuple(formulas), tuple(operators))
+
+
+def differs(value: Scalar) -> Relation:
+    """Return that a value is not 0, solved for a parameter where that is possible; of a sum of squares, that not all are."""
+    if isinstance(value, SumOfSquares):
+        return relation(Matrix.row(value.parts), "!=", Matrix.zeros(1, len(value.parts)))
+    left, right = solved(value)
+    return relation(left, "!=", right)
 
 
 def predicate(name: str, subject: Member) -> Predicate:
@@ -314,7 +322,7 @@ class Builder:
         """State that polynomials are not zero from here on."""
         factors = [factor for value in values for factor, _ in value.numerator.factors()[1]]
         self.environment = replace(self.environment, nonzero=(*self.environment.nonzero, *factors))
-        conditions = tuple(relation(left, "!=", right) for left, right in map(solved, values))
+        conditions = tuple(map(differs, values))
         self.steps.append(Given(conditions, sentence(key, {"condition": Conjunction(conditions)})))
 
     def set(self, name: str, value: Scalar | Matrix) -> Term:

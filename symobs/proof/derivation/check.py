@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
-from symobs.exact import Ideal, Matrix, Scalar, product_of
+from symobs.exact import Ideal, Matrix, Scalar, TooLarge, product_of
 from symobs.formula.phrases import ASSERTS, NAMING
 from symobs.formula.phrases.languages import SPOKEN
 from symobs.formula.tree import (
@@ -42,6 +42,7 @@ from symobs.proof.derivation.facts import (
     BUG,
     PREDICATES,
     are_roots,
+    difference_of,
     is_exactly,
     on_stratum,
     polynomial_of,
@@ -114,6 +115,8 @@ def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> 
     for step in steps:
         try:
             environment = after(step, environment, discrete)
+        except TooLarge:
+            raise
         except UNREADABLE as error:
             message = f"a step of kind {type(step).__name__} cannot be read: {error}"
             raise DerivationRejected(message, repair=BUG, line=str(step)) from error
@@ -341,8 +344,7 @@ def with_domain(relation: Relation, environment: Environment) -> Environment:
 
 def _assume(relation: Relation, environment: Environment) -> Environment:
     """Let the factors of a difference, which there must be, be different from 0 from here on."""
-    left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
-    difference = (left - right).numerator
+    difference = difference_of(relation, environment).numerator
     if difference in Ideal.where(environment.relations):
         reject(plain_relation(relation, environment.variable))
     return replace(environment, nonzero=(*environment.nonzero, *(f for f, _ in difference.factors()[1])))

@@ -87,7 +87,8 @@ def _verdict(value: Scalar, environment: Environment, discrete: bool) -> str:  #
     """Return the verdict on a polynomial where the relations hold, or as it is written, whichever tells more."""
     variable, signs = environment.variable, environment.signs
     found = stability(polynomial_of(value, environment), variable, signs, discrete=discrete).verdict
-    is_same = value.denominator.is_constant and value.coefficients(variable)[0].is_constant  # of the same degree
+    outer = value.denominator, value.coefficients(variable)[0]
+    is_same = all(never_zero(part, signs) for part in outer)  # defined, and of the same degree
     return stability(value, variable, signs, discrete=discrete).verdict if found == "conditional" and is_same else found
 
 
@@ -218,9 +219,9 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
     each value put in follows from them.
     """
     if not substitution and isinstance(when, Relation) and when.operators in {("<",), (">",), ("!=",)}:
-        left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
         if when.operators == ("!=",):
             return environment  # it narrows, and nothing is put in: all stays true
+        left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
         return _where_positive(left - right if when.operators == (">",) else right - left, environment)
     if not substitution and isinstance(when, Relation) and when.operators == ("=",):
         left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in when.members)
@@ -301,6 +302,14 @@ def _there(value: Any, substitution: Mapping[str, Scalar], lost: set[str]) -> An
     return substitute(value, substitution)
 
 
+def difference_of(relation: Relation, environment: Environment) -> Scalar:
+    """Return what is 0 exactly where both members are equal: their difference, of rows the sum of its squares."""
+    left, right = (evaluate(member, environment, Exact(environment)) for member in relation.members)
+    if isinstance(left, Matrix) and isinstance(right, Matrix) and left.shape[1] > 1:
+        return sum((entry**2 for entry in (left - right).entries), Scalar.of(0))
+    return as_scalar(left) - as_scalar(right)
+
+
 def _known_there(values: tuple[Scalar, ...], substitution: Mapping[str, Scalar]) -> tuple[Scalar, ...]:
     """Return values on a stratum, without those that mean nothing there: of these nothing is known any more."""
     found = []
@@ -318,11 +327,10 @@ def _left_of(when: Conjunction, substitution: dict[str, Scalar], environment: En
     equations: list[Scalar] = []
     excluded: list[Scalar] = []
     for relation in when.relations:
-        left, right = (as_scalar(evaluate(member, environment, Exact(environment))) for member in relation.members)
         if relation.operators == ("=",):
-            equations.append((left - right).numerator)
+            equations.append(difference_of(relation, environment).numerator)
         elif relation.operators == ("!=",):
-            excluded.append(left - right)
+            excluded.append(difference_of(relation, environment))
         else:
             reject(plain_relation(relation, environment.variable))
     relations = [apart_from_zero(value) for value in excluded]
@@ -362,6 +370,11 @@ def is_exactly(
     positive = tuple(value**2 if operator == "!=" else value for value, operator in said)
     if is_criterion(name, polynomial, positive, environment, discrete):
         return True
+    if name == "positive_definite" and isinstance(polynomial, tuple) and said:
+        from symobs.stability.criteria.stability_conditions import say_the_same  # noqa: PLC0415 - only these pages pay for it
+
+        bounds = [bound for each in polynomial for bound in needed(name, each, environment, discrete)]
+        return say_the_same(bounds, positive, environment.signs)
     if name != "stable" or not said or isinstance(polynomial, tuple):
         return False
     from symobs.proof.derivation.region_check import holds_exactly, region_of  # noqa: PLC0415 - only pages of regions pay for it

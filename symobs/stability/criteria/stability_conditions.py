@@ -14,7 +14,7 @@ from symobs.stability.criteria.stability import bilinear, lienard_chipart
 from symobs.stability.inequalities.decision import equivalence_of
 from symobs.stability.inequalities.prover import prove
 from symobs.stability.inequalities.simplify import Simplified, as_inequality, cleared, simplify
-from symobs.system.conditions import FACTORED_UP_TO, sign_of
+from symobs.system.conditions import FACTORED_UP_TO, never_zero, sign_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -86,6 +86,26 @@ def is_stable_where(
     if _is_equivalent(found.positive, said, signs) and _is_checked(found.equivalence, lists, signs):
         return True
     return any(_is_equivalent(raw, said, signs) for raw in lists)
+
+
+def say_the_same(raw: Sequence[Scalar], said: Sequence[Scalar], signs: Mapping[str, str]) -> bool:
+    """Return whether it is proved that two lists are positive at the same points (trusted)."""
+    found = simplify(raw, signs, ask=False)
+    same = [[_is_multiple(value, other, signs) for other in said] for value in found.positive]
+    if (
+        same
+        and _is_checked(found.equivalence, [raw], signs)
+        and all(map(any, same))
+        and all(map(any, zip(*same, strict=True)))
+    ):
+        return True
+    return _is_equivalent(raw, said, signs)
+
+
+def _is_multiple(value: Scalar, other: Scalar, signs: Mapping[str, str]) -> bool:
+    """Return whether two values differ by a positive factor that is defined everywhere."""
+    ratio = value / other
+    return sign_of(ratio, signs) == "positive" and never_zero(ratio.denominator, signs)
 
 
 def _is_checked(proof: Equivalence, lists: Sequence[Sequence[Scalar]], signs: Mapping[str, str]) -> bool:

@@ -313,8 +313,12 @@ def _without_implied(
 
 
 def prove_value(value: Scalar, known: Sequence[Scalar], signs: Signs) -> tuple[Step, ...] | None:
-    """Return steps from the known values to value > 0; of a square, to its root, of either sign."""
+    """Return steps from the known values to value > 0; of a square, to its root, of either sign, or what it divides."""
     root = root_of_square(value)
+    for each in known:
+        cofactor = each / root if root is not None and each.size <= FACTORED_UP_TO else ZERO
+        if not cofactor.is_zero and cofactor.denominator.is_constant:
+            return (Combined(value, ((cofactor**2, ()),), ((Scalar.of(1), (each, each)),)),)
     for goal in (value,) if root is None else (root, -root):
         steps = prove(goal, known, signs)
         if steps is not None:

@@ -18,6 +18,7 @@ from symobs.exact import (
     roots_of,
 )
 from symobs.exact.core.generators import NotWritten, exponentials_in, symbols_named
+from symobs.exact.numerals.written_digits import DATA_DIGITS
 from symobs.formula.tree import (
     Conjunction,
     Decimals,
@@ -32,7 +33,7 @@ from symobs.formula.tree import (
 from symobs.formula.tree.term import block
 from symobs.ground.errors import DerivationRejected
 from symobs.proof.derivation import CaseStep, Note, Step
-from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
+from symobs.proof.derivation.builder import Builder, differs, predicate, relation, sentence
 from symobs.proof.derivation.facts import on_stratum, polynomial_of
 from symobs.stability.criteria.stability import monic, stability
 from symobs.stability.inequalities.simplify import as_inequality
@@ -193,6 +194,8 @@ def given(
         _hold_to_letters(page, by)
         if plant.is_from_floats:
             page.remark("from_floats")
+        if plant.is_rounded:
+            page.remark("data_rounded", digits=str(DATA_DIGITS))
         _say_decimals(page)
         state_signs(page)
         _state_stratum(page, where)
@@ -338,6 +341,8 @@ def stratum_of(case: Case) -> Relation | Conjunction:
 def as_written(condition: Condition) -> Relation:
     """Return a condition, solved where that is possible."""
     operator = condition.operator.replace("==", "=")
+    if operator == "!=":
+        return differs(condition.expression)
     left, right = solved(condition.expression, operator)
     return relation(left, operator, right)
 

@@ -23,11 +23,10 @@ from symobs.formula.tree import (
 from symobs.formula.tree.term import Term, block
 from symobs.proof.certificate.claims import verify
 from symobs.proof.derivation import CaseStep, Conclude
-from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
+from symobs.proof.derivation.builder import Builder, differs, predicate, relation, sentence
 from symobs.proof.derivation.facts import PREDICATES
 from symobs.proof.derivation.wording_check import Said, rests
 from symobs.stability.criteria.stability import is_beyond, is_marginal, stability
-from symobs.system.conditions import solved
 from symobs.tasks.analysis.page_parts import environment_on, is_narrow, spread
 from symobs.tasks.analysis.strata.strata import distances, systems_of
 from symobs.tasks.analysis.time_response.response import TIMES, Signals, plot_courses, rounded_up, rows_of, window_of
@@ -354,7 +353,7 @@ def _outside(cases: Sequence[Case]) -> Conjunction:
 
 
 def _apart(values: Iterable[Scalar]) -> Conjunction:
-    return Conjunction(tuple(relation(left, "!=", right) for left, right in map(solved, values)))
+    return Conjunction(tuple(map(differs, values)))
 
 
 def _is_unassignable(case: Case) -> bool:

@@ -291,7 +291,7 @@ def _entries_of(result: Any, fields: Mapping[str, Any]) -> list[Scalar | None]:
     """Return the entries of the fields of a case; None for those of a field that is missing there or has another shape."""
     apart, found = {result.plant.variable, "t"}, list[Scalar | None]()
     for name, field in fields.items():
-        own = result.fields.get(name)
+        own = result.numbers.get(name)
         alike = own is not None and getattr(own, "shape", None) == getattr(field, "shape", None)
         alike = alike and not (isinstance(own, (Matrix, Scalar)) and symbols_in(own) & apart)
         found += _scalars_of(own) if alike else [None] * len(_scalars_of(field))
@@ -332,7 +332,7 @@ def _fields(result: Any) -> dict[str, Any]:
     apart = {result.plant.variable, "t"}
     return {
         name: value
-        for name, value in result.fields.items()
+        for name, value in result.numbers.items()
         if (isinstance(value, int) and not isinstance(value, bool))
         or (isinstance(value, (Matrix, Scalar)) and not symbols_in(value) & apart)
     }

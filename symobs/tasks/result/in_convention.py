@@ -86,6 +86,11 @@ class ResultInConvention:
         return {**self.result.fields, **self.renamed_fields}
 
     @cached_property
+    def numbers(self) -> Mapping[str, Any]:
+        """The fields as programs use them."""
+        return {**self.result.numbers, **self._own(self.result.numbers)}
+
+    @cached_property
     def renamed_fields(self) -> Mapping[str, Any]:
         """The fields in the convention's names and signs."""
         return self._own(self.result.fields)

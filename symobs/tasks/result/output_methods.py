@@ -15,7 +15,7 @@ from symobs.formula.convention import convention_named
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import UsageError
-from symobs.system.conditions import Condition
+from symobs.system.conditions import Condition, SumOfSquares
 from symobs.system.reading import has_decimals
 
 if TYPE_CHECKING:
@@ -82,7 +82,9 @@ def to_sympy(value: Any, objects: Mapping[str, Any]) -> Any:
     if isinstance(value, Shifted):
         return conversion.scalar_to_sympy(value.value, objects) - conversion.root_to_sympy(value.root, objects)
     if isinstance(value, Condition):
-        return conversion.relation_to_sympy(value.expression, value.operator, objects)
+        expression, operator = value.expression, value.operator
+        parts = expression.parts if isinstance(expression, SumOfSquares) and operator == "!=" else (expression,)
+        return conversion.relation_to_sympy(parts, operator, objects)
     if isinstance(value, tuple) and value and all(isinstance(row, tuple) and _are_factored(row) for row in value):
         return conversion.table_to_sympy(value, objects)
     if isinstance(value, (list, tuple)):
@@ -179,6 +181,15 @@ class OutputMethods:
         """The nearest doubles of the answers that are numbers, also of those without a closed form, as JSON has them."""
         return doubles_of(self.fields)
 
+    @property
+    def numbers(self) -> Mapping[str, Any]:
+        """The fields as programs use them: certain digits, as rational numbers, stand for what has no closed form."""
+        return self.fields
+
+    def decimals_to(self, digits: int) -> dict[str, Any]:  # noqa: ARG002 - for results that can find more of them
+        """Return the decimals with so many digits where more can be found."""
+        return self.decimals
+
     def evaluate(self, points: Mapping[Any, Any]) -> dict[str, Any]:
         """Return a NumPy array for each field at arrays of points: `result.evaluate({"k": np.linspace(1, 2, 100)})`.
 
@@ -216,7 +227,7 @@ class OutputMethods:
         if name.startswith("_") or name not in self.fields:
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
         if name not in self._objects:
-            self._objects[name] = to_sympy(self.fields[name], self.plant.symbols.objects)
+            self._objects[name] = to_sympy(self.numbers[name], self.plant.symbols.objects)
         return self._objects[name]
 
     @cached_property
@@ -231,6 +242,9 @@ class OutputMethods:
     def __repr__(self) -> str:
         """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
         parts = {name: value for name, value in self.answer.items() if value is not None}
+        for name in self.answered_by if self.numbers is not self.fields else ():  # the digits themselves
+            parts[name] = "[" + "; ".join(" ".join(row) for row in self.decimals[name]) + "]"
+            parts.pop("digits", None)
         long = {name: size for name, value in parts.items() if (size := getattr(value, "size", 0)) > _TERMS_SHOWN}
         shown = [f"{name}=<{long[name]} terms>" if name in long else f"{name}={value}" for name, value in parts.items()]
         verdict = "" if long else f", verdict={self.verdict!r}"

@@ -11,7 +11,7 @@ from functools import cache, cached_property, partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, NoReturn, Self, TypeAlias, Unpack, overload
 
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.convention import STANDARD
 from symobs.formula.tree import Environment
@@ -265,7 +265,7 @@ class Result(TaskTraits):
         written = page.derivation()
         try:
             established = written.check()
-        except DerivationRejected:
+        except (DerivationRejected, TooLarge):
             written = without_failing_cases(written)
             established = written.check()
         for name, value in self.data.items():

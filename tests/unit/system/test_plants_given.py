@@ -10,13 +10,23 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy
-from sympy.physics.control import Series, TransferFunction
+from sympy.physics.control import (
+    Feedback,
+    MIMOFeedback,
+    MIMOParallel,
+    MIMOSeries,
+    Parallel,
+    Series,
+    TransferFunction,
+    TransferFunctionMatrix,
+)
 from sympy.physics.control import StateSpace as SymPyStateSpace
 
 import symobs
 from symobs import StateSpace
-from symobs.ground.errors import InputError
+from symobs.ground.errors import CertificateRejected, InputError
 from symobs.problem import read
+from symobs.system import other_programs
 from tests.kit import SERVO, tabled, text_of
 
 b, p, s, z = sympy.symbols("b p s z")
@@ -87,6 +97,58 @@ def test_systems_of_sympy_and_coefficients_are_plants(system: Any) -> None:
     result = symobs.observer(system, poles=[-1, -2])
     error = SERVO.A - result.L * SERVO.C
     assert (error.trace(), error.det()) == (-3, 2)
+
+
+def of_state(pole: int) -> SymPyStateSpace:
+    """1/(s + pole) in state space."""
+    return SymPyStateSpace(sympy.Matrix([[-pole]]), sympy.Matrix([[1]]), sympy.Matrix([[1]]), sympy.Matrix([[0]]))
+
+
+def function(pole: int) -> TransferFunction:
+    return TransferFunction(1, s + pole, s)
+
+
+MATRIX = TransferFunctionMatrix([[function(1), function(2)], [function(3), function(1)]])
+OTHER = TransferFunctionMatrix([[TransferFunction(1, 1, s), function(2)], [function(3), TransferFunction(s, s + 1, s)]])
+TWO = SymPyStateSpace(sympy.Matrix([[-1, 1], [0, -2]]), sympy.eye(2), sympy.eye(2), sympy.zeros(2, 2))
+G = [1 / (s + pole) for pole in (0, 1, 2, 3)]
+M = sympy.Matrix([[G[1], G[2]], [G[3], G[1]]])
+N = sympy.Matrix([[1, G[2]], [G[3], s * G[1]]])
+T = sympy.Matrix([[G[1], G[1] * G[2]], [0, G[2]]])
+
+
+@pytest.mark.parametrize(
+    ("system", "right", "order"),
+    [
+        (Series(of_state(1), of_state(2), of_state(3)), G[1] * G[2] * G[3], 3),
+        (Series(function(1), function(2), function(3)), G[1] * G[2] * G[3], 3),
+        (Series(of_state(1), function(2), of_state(3)), G[1] * G[2] * G[3], 3),
+        (Series(TransferFunction(b, 1, s), of_state(1), of_state(2)), b * G[1] * G[2], 2),
+        (Parallel(of_state(1), of_state(2), of_state(3)), G[1] + G[2] + G[3], 3),
+        (Parallel(function(1), Series(function(2), function(3))), G[1] + G[2] * G[3], 3),
+        (Feedback(function(1), function(2)), G[1] / (1 + G[1] * G[2]), 2),
+        (Feedback(Series(of_state(1), of_state(2), of_state(3)), function(3), 1), None, 4),
+        (Feedback(of_state(1), TransferFunction(1, 1, s)), G[2], 1),
+        (MIMOSeries(MATRIX, OTHER), N * M, None),
+        (MIMOParallel(MATRIX, OTHER), M + N, None),
+        (MIMOFeedback(MATRIX, OTHER), (sympy.eye(2) + M * N).inv() * M, None),
+        (MIMOSeries(TWO, MATRIX, TWO), T * M * T, None),
+    ],
+)
+def test_connections_of_sympy_have_all_their_parts(system: Any, right: Any, order: int | None) -> None:
+    right = G[1] * G[2] * G[3] / (1 - G[1] * G[2] * G[3] ** 2) if right is None else right
+    found = symobs.transfer_function(system)
+    difference = sympy.Matrix([[found.transfer_function]] if order else found.transfer_function) - sympy.Matrix(
+        [[right]] if order else right
+    )
+    assert difference.subs(b, 7).applyfunc(sympy.cancel).is_zero_matrix
+    assert order in (None, found.plant.order)
+
+
+def test_a_connection_that_is_another_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(other_programs, "_in_series", lambda first, *_: first)
+    with pytest.raises(CertificateRejected, match="another value at a point"):
+        symobs.transfer_function(Series(of_state(1), of_state(2)))
 
 
 def test_systems_of_python_control_are_plants() -> None:

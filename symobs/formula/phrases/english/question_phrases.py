@@ -29,6 +29,7 @@ PHRASES: dict[str, str] = {
     "tasks": "Tasks.",
     "part": "({letter})",
     "plant_found": "The following parts are about the plant found in part ({letter}).",
+    "exceptions_asked": "If the answer depends on the parameters, give the values for which it is no.",
     # What is said of a task without a sentence of its own: the first line of its description.
     "asked": "{summary}",
 }

@@ -32,6 +32,7 @@ PHRASES: dict[str, str] = {
     "equilibrium_discrete": "The states keep their values at the equilibrium:",
     "linearised": "For small deviations $x$, $u$ and $y$ from the equilibrium, the linearised plant has the matrices",
     "realised": "A realisation in controllable canonical form is",
+    "data_rounded": "Irrational data are rounded to {digits} significant digits; what follows holds for these numbers.",
     "from_floats": "Floating-point entries are taken as the shortest decimals that represent them.",
     "exact_decimals": "The decimals are taken as exact: {numbers}.",
     "rounded_digits": "Numbers after ≈ are exact values rounded to {digits} significant digits.",

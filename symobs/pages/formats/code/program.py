@@ -225,12 +225,12 @@ class Answer(NamedTuple):
     value: Any
 
 
-def chosen_answers(document: Document) -> list[Answer]:
+def chosen_answers(document: Document, *, as_numbers: bool = False) -> list[Answer]:
     """Return the requested answers in the document's convention; raises `UsageError` for unknown names.
 
     Where several results have a name, it is that of each of them.
     """
-    every = [answer for result in document.results for answer in _answers(result, document)]
+    every = [answer for result in document.results for answer in _answers(result, document, as_numbers=as_numbers)]
     known = dict.fromkeys(answer.name for answer in every)
     for name in document.printed:
         if name not in known:
@@ -242,9 +242,10 @@ def chosen_answers(document: Document) -> list[Answer]:
     return [answer for name in printed for answer in every if answer.name == name]
 
 
-def _answers(result: Result, document: Document) -> list[Answer]:
+def _answers(result: Result, document: Document, *, as_numbers: bool = False) -> list[Answer]:
     """Return what --print may name: the fields of a result, its verdict, and its conditions."""
-    fields = ResultInConvention(result, document.convention).fields
+    view = ResultInConvention(result, document.convention)
+    fields = view.numbers if as_numbers else view.fields
     digits = {name: result.decimals[name] for name in result.fields if fields[name] is None and name in result.decimals}
     named = {**fields, **digits, "verdict": result.verdict, "conditions": result.holds_where}
     return [Answer(result.task, name, value) for name, value in named.items()]
@@ -288,13 +289,13 @@ def number_rows(document: Document, wanted: str) -> dict[str, list[list[str]]]:
     """
     variables = {result.plant.variable for result in document.results} | {"t"}
     if document.printed:
-        found = [answer for answer in chosen_answers(document) if answer.value is not None]
+        found = [answer for answer in chosen_answers(document, as_numbers=True) if answer.value is not None]
         for _, name, value in found:
             if not _is_table(value) or symbols_in(_matrix(value)) & variables:
                 message = f"{name} is not made of numbers"
                 raise UsageError(message, where="--print", repair="leave --format out, or write --format text")
     else:
-        found = [Answer(r.task, *field) for r in document.results for field in r.fields.items() if _is_table(field[1])]
+        found = [Answer(r.task, *field) for r in document.results for field in r.numbers.items() if _is_table(field[1])]
         inside = [symbols_in(_matrix(answer.value)) & variables for answer in found]
         left_out = [answer.name for answer, letters in zip(found, inside, strict=True) if letters]
         found = [answer for answer, letters in zip(found, inside, strict=True) if not letters]

@@ -17,7 +17,6 @@ from symobs.exact import (
     modulo,
     primitive,
     primitive_kernel,
-    product_of,
     solve_or_refute,
 )
 from symobs.formula.tree import HoldsExactlyWhere
@@ -26,8 +25,8 @@ from symobs.ground.errors import CertificateRejected, Undecided
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.proof.derivation.facts import leading_minors
-from symobs.stability.criteria.stability import StabilityVerdict, essential, stability
-from symobs.stability.inequalities.simplify import as_inequality
+from symobs.stability.criteria.stability import StabilityVerdict, stability
+from symobs.stability.inequalities.simplify import as_inequality, cleared, simplify
 from symobs.system.conditions import sign_of, vanishing_factors
 from symobs.system.specification import over_common_data, read_symmetric
 from symobs.tasks.analysis.page_parts import case_steps, determinant_form, given
@@ -166,8 +165,11 @@ class LyapunovSolution(PutAgain):
             return stability(chi, plant.variable, signs, discrete=plant.is_discrete)
         if not self.leading or self.lowest_minor is not None:
             return StabilityVerdict("no")
-        needed = tuple(dict.fromkeys(_odd_part(m, signs) for m in self.leading if sign_of(m, signs) != "positive"))
-        return StabilityVerdict("conditional", needed) if needed else StabilityVerdict("yes")
+        needed = tuple(m for m in self.leading if sign_of(m, signs) != "positive")
+        found = simplify(needed, signs, ask=False)
+        if found.verdict == "no":  # several minors contradict each other, and none does alone
+            return StabilityVerdict("conditional", tuple(map(cleared, needed)))
+        return StabilityVerdict(found.verdict, found.positive)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
@@ -204,13 +206,6 @@ def _image(plant: StateSpace) -> Matrix:
     for coefficient in total:
         found = found @ moved + Matrix.identity(A.shape[0]) * coefficient
     return modulo(found.normal(), plant.ideal)
-
-
-def _odd_part(minor: Scalar, signs: Mapping[str, str]) -> Scalar:
-    """Return what has the sign of a minor wherever that is defined: even powers in the denominator are positive there."""
-    below = [(f, power) for f, power in minor.denominator.factors()[1] if power % 2 == 0]
-    even = product_of(f**power for f, power in below) if below else Scalar.of(1)
-    return essential(minor * even, signs)
 
 
 def trace(Q: Matrix, X: Matrix) -> Scalar:

@@ -9,9 +9,9 @@ from symobs.formula.phrases.languages import StateChoice
 from symobs.formula.tree import Conjunction, Roots
 from symobs.formula.tree.term import block
 from symobs.proof.derivation import CaseStep, Conclude, Equal, Step
-from symobs.proof.derivation.builder import Builder, relation, sentence, shows
+from symobs.proof.derivation.builder import Builder, differs, relation, sentence, shows
 from symobs.proof.derivation.wording_check import fits
-from symobs.system.conditions import solved, vanishing_factors
+from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import (
     HIDDEN,
     WRITTEN_UP_TO,
@@ -167,7 +167,7 @@ def outside_cases(page: Builder, result: Result, steps: list[Step]) -> list[Step
     apart = _distances(result)
     if not apart or not steps:
         return steps if apart == () else []
-    where = Conjunction(tuple(relation(left, "!=", right) for left, right in map(solved, apart)))
+    where = Conjunction(tuple(map(differs, apart)))
     return [] if environment_on(page, where) is None else [CaseStep(where, (), tuple(steps))]
 
 

@@ -59,7 +59,7 @@ from symobs.tasks.analysis.strata.strata import (
 from symobs.tasks.result import Case, Result, equality, holds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.system import StateSpace
 
@@ -269,6 +269,21 @@ class RankResult(Result):
         return self.plant.simplified(matrix.determinant()) if square and not self.is_too_long else None
 
     @cached_property
+    def deciding_determinant(self) -> Scalar | None:
+        """That determinant; of a matrix in which all but n rows are multiples of those above them, that of these rows."""
+        matrix: Matrix = self.answer["matrix"]
+        order = matrix.shape[1]
+        if matrix.shape[0] == order or self.is_too_long:
+            return self.test_determinant
+        kept: list[int] = []
+        for index, row in enumerate(matrix.rows):
+            if any(row) and not any(_is_multiple(row, matrix.rows[other]) for other in kept):
+                kept.append(index)
+        if len(kept) != order:
+            return None
+        return self.plant.simplified(matrix.select(kept, range(order)).determinant())
+
+    @cached_property
     def is_too_long(self) -> bool:
         """Whether the minors have more terms than can be dealt with."""
         return determinant_terms(self.answer["matrix"].select(self.answer["rows"], range(self.plant.order))) > EXPANDED
@@ -294,7 +309,7 @@ class RankResult(Result):
             return "no"
         lost = [case for case in self.case_tree if case.result is not None and case.result.verdict == "no"]
         unknown = [case for case in self.case_tree if case.result is None]
-        if lost or (unknown and self.test_determinant is not None):
+        if lost or (unknown and self.deciding_determinant is not None):
             return "conditional"
         return "undecided" if unknown else "yes"
 
@@ -309,8 +324,9 @@ class RankResult(Result):
             return (*self.domain, *self.piece.conditions)
         if self.answer["rank"] < self.plant.order:
             return self.domain
-        if self._tree is None:  # the determinant is known, though not what is true where it vanishes
-            factors = () if self.test_determinant is None else self._region.vanishing(self.test_determinant)
+        if self._tree is None or (self._tree.undecided and self.deciding_determinant is not None):
+            # the determinant is known, though not what is true where it vanishes
+            factors = () if self.deciding_determinant is None else self._region.vanishing(self.deciding_determinant)
             return (*self.domain, *(Condition("existence", value) for value in factors))
         lower = [node.locus for node in self._tree.strata if node.rank < self.plant.order]
         lost = Node(self._region.whole, self.answer["rank"], (), below=maximal([*lower, *self._tree.undecided]))
@@ -364,6 +380,11 @@ class RankResult(Result):
         except (CertificateRejected, TooLarge):
             unknown = (factor for value in self.existence for factor in self._region.vanishing(value))
             cases += [Case((Condition("existence", factor, "=="),), {}, None) for factor in unknown]
+        cases += [case for case in found if case.result is None]
+        found = [case for case in found if case.result is not None]
+        if cases and self.deciding_determinant is not None:  # they lie where this vanishes
+            factors = self._region.vanishing(self.deciding_determinant)
+            cases = [Case((Condition("existence", factor, "=="),), {}, None) for factor in factors]
         return (*found, *cases), tuple(certificates)
 
     def _case(self, stratum: RankStratum) -> Case:
@@ -424,6 +445,13 @@ class RankResult(Result):
         """The basis of the kernel, vector by vector."""
         N: Matrix = self.answer["kernel"]
         return tuple(N.select(range(N.shape[0]), [j]) for j in range(N.shape[1]))
+
+
+def _is_multiple(row: Sequence[Scalar], other: Sequence[Scalar]) -> bool:
+    """Return whether a row is another one times a polynomial."""
+    first = next(index for index, entry in enumerate(other) if entry)
+    factor = row[first] / other[first]
+    return factor.denominator.is_constant and all(x == factor * y for x, y in zip(row, other, strict=True))
 
 
 def listed(sets: tuple[tuple[int, ...], ...] | None) -> list[list[int]] | None:

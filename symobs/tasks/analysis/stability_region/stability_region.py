@@ -609,5 +609,5 @@ def stability_region(
     else:
         known = Symbols.of(symbols).naming(parameters, where)
         asked = StateSpace.from_polynomial(plant if polynomial is None else polynomial, dt, symbols=known)
-    question = read_question(asked, {"K": K, "L": L}, parameters, margin, radius)
+    question = read_question(asked.in_digits(), {"K": K, "L": L}, parameters, margin, radius)
     return choose("stability_region", method, "routh").solve(question).asked(method)

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from symobs.exact import EIGENVALUE, Ideal, Scalar, TooLarge, resultant
 from symobs.exact.ideals import FEW
 from symobs.ground.dataclass import dataclass
-from symobs.system.conditions import FACTORED_UP_TO, real_consequences, sign_of, vanishing_factors
+from symobs.system.conditions import FACTORED_UP_TO, SumOfSquares, real_consequences, sign_of, vanishing_factors
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -116,7 +116,7 @@ class Locus:
 
 def distance_from(equations: tuple[Scalar, ...]) -> Scalar:
     """Return a polynomial that is 0 exactly where some equations hold: the only one, or the sum of their squares."""
-    return equations[0] if len(equations) == 1 else sum((equation**2 for equation in equations), Scalar.of(0))
+    return SumOfSquares.of_parts(equations)
 
 
 EVERYWHERE = Locus((), Ideal.of(()))

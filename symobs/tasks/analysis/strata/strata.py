@@ -419,7 +419,7 @@ def _case(place: Place, plant: StateSpace, find: Callable[[], Result | None]) ->
         return
     except (NotWritten, Undecided):
         yield Case(when, values or {}, None)
-    except (CertificateRejected, TooLarge):
+    except CertificateRejected:
         if values is not None and not plant.equations:
             raise
         yield Case(when, {}, None)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Factored, Matrix, RealNumber, Scalar, transfer
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
+from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
 from symobs.formula.tree import Decimals, Environment
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
@@ -228,6 +229,23 @@ def loop_of(design: Any) -> tuple[Scalar, Scalar]:
     return _plain(fields[name]), opened
 
 
+def in_digits(design: Any) -> Any:
+    """Return a design of numbers with its irrational data and gains rounded; itself where it is rational, or has letters."""
+    fields = design.numbers
+    gains = {letter: matrix_in_digits(fields[letter]) for letter in "KL" if fields.get(letter) is not None}
+    if None in gains.values() or all(gains[letter] == design.answer.get(letter) for letter in gains):
+        return design
+    plant = design.plant.in_digits().with_rounding()
+    if design.task != "compensator":
+        kind: Any = StateFeedbackDesign if "K" in gains else ObserverDesign
+        return kind.of_given(plant, *gains.values())
+    observer, nothing = "minimal" if design.has_reduced_observer else "full", (None, None)
+    given_gains = gains["K"], gains["L"]
+    return observer_based(
+        plant, task="margins", control=nothing, estimate=nothing, observer=observer, gains=given_gains
+    )
+
+
 def _not_proper(where: str, repair: str) -> InputError:
     message = "the loop has a gain at infinity: neither the plant nor the compensator is strictly proper"
     return InputError(message, where=where, repair=repair)
@@ -310,10 +328,11 @@ def margins(
         for name, value in asked.items():
             reject_both("controller", controller, value, None, other=name)
         plant.require("B", "C", task="margins")
+        plant = plant.in_digits()
         written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
         found: Result = chosen.solve(plant, None, written, _loop_of_controller(plant, written))
         return found.asked(method)
-    design = _design(plant.knowing(*asked.values()), asked, observer)
+    design = in_digits(_design(plant.knowing(*asked.values()), asked, observer))
     loop = None if design.verdict == "no" else loop_of(design)
     found = chosen.solve(design.plant, design, None, loop)
     return found.asked(method)

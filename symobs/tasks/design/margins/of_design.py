@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from symobs.ground.errors import InputError
-from symobs.tasks.design.margins.margins import MARGINS, Margins, loop_of, public
+from symobs.tasks.design.margins.margins import MARGINS, Margins, has_loop, in_digits, loop_of, public
 from symobs.tasks.design.margins.margins import margins as margins_task
 from symobs.tasks.result import Result
 
@@ -17,8 +17,9 @@ def margins(design: Any, **asked: Any) -> Mapping[str, Any] | Result:
     """Return how far a loop is from instability: of a state feedback, an observer, a compensator, `lqr` or `kalman`.
 
     The loop is K(sI − A)⁻¹B, C(sI − A)⁻¹L, or F(s)G(s) cut at the input of the plant; it has one input and one output,
-    numbers without roots, and a stable closed loop.  Returns by name: gain_down and gain_up, the ends of the interval
-    around 1 of gains that keep the loop stable; phase_deg, the smallest angle in degrees, either way, that does not;
+    numbers, of which irrational ones are rounded to 15 digits, and a stable closed loop.
+    Returns by name: gain_down and gain_up, the ends of the interval around 1 of gains that keep the loop stable;
+    phase_deg, the smallest angle in degrees, either way, that does not;
     modulus, the smallest distance from −1 on the boundary of stability; peak, the largest value of |1/(1 + loop)| there;
     slowest, the largest real part (in discrete time modulus) of the poles.  Ends and slowest are exact, oo where there is
     no end; angle, distance and peak are rounded to six certain digits after the point.  Raises `InputError` otherwise.
@@ -27,7 +28,7 @@ def margins(design: Any, **asked: Any) -> Mapping[str, Any] | Result:
     """
     if asked or (isinstance(design, Result) and design.as_plant is not None):
         return margins_task(design, **asked)
-    closed, opened = loop_of(design)
+    closed, opened = loop_of(design := in_digits(design) if has_loop(design) else design)
     found = Margins.of(design.plant, design, None, (closed, opened))
     if found.answer["open"]:
         message = f"margins are those of loops with rational numbers: {found.answer['open']}"

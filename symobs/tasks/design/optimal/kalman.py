@@ -10,9 +10,11 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import ShapeMismatch
 from symobs.system import read_matrix
 from symobs.system.specification import from_list
+from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.optimal.optimal_gain import OptimalGain, design_optimal
 from symobs.tasks.design.optimal.optimal_page import write_optimal
 from symobs.tasks.result import Result, method, page_of, task
+from symobs.tasks.result.control_systems import Controller, observer_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,6 +34,8 @@ class OptimalFilter(OptimalGain):
     letters = {"L": "L", "P": "P_x", "polynomial": "chi_L", "poles": "chi_L"}
     cards = ("L", "P", "polynomial")
     letter: ClassVar[str] = "L"
+    design_kind = ObserverDesign
+    of_loop = ("A", "B_u", "B_y")
 
     @staticmethod
     def regulator_of(plant: StateSpace, weights: Mapping[str, Matrix]) -> Regulator:
@@ -46,6 +50,11 @@ class OptimalFilter(OptimalGain):
         if discrete:
             return "A*P*A.T - P + noise = L*(V + C*P*C.T)*L.T", "L*(V + C*P*C.T) = A*P*C.T"
         return "A*P + P*A.T + noise = L*V*L.T", "L*V = P*C.T"
+
+    @property
+    def controller(self) -> Controller | None:
+        """(u, y) → x̂."""
+        return observer_of(self)
 
 
 page_of(OptimalFilter)(write_optimal)

@@ -8,6 +8,7 @@ from symobs.exact import Matrix
 from symobs.exact.floating.riccati_check import Regulator
 from symobs.ground.dataclass import dataclass
 from symobs.system.specification import read_gain
+from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.optimal.optimal_gain import OptimalGain, design_optimal
 from symobs.tasks.design.optimal.optimal_page import write_optimal
 from symobs.tasks.result import Result, method, page_of, task
@@ -30,6 +31,8 @@ class OptimalFeedback(OptimalGain):
     letters = {"K": "K", "P": "P_x", "polynomial": "chi_K", "poles": "chi_K"}
     cards = ("K", "P", "polynomial")
     letter: ClassVar[str] = "K"
+    design_kind = StateFeedbackDesign
+    of_loop = ("closed_loop_matrix",)
 
     @staticmethod
     def regulator_of(plant: StateSpace, weights: Mapping[str, Matrix]) -> Regulator:

@@ -27,7 +27,7 @@ from symobs.exact import (
     solve_or_refute,
 )
 from symobs.exact.algebraic.enclosure import is_number
-from symobs.exact.core.generators import identities
+from symobs.exact.core.generators import all_roots, identities
 from symobs.exact.floating.riccati import enclosed_solution, hamiltonian
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import identity
@@ -49,12 +49,16 @@ if TYPE_CHECKING:
 
     from symobs.exact.floating.riccati import Enclosure
     from symobs.exact.floating.riccati_check import Regulator
+    from symobs.exact.linear_algebra.transfer_function import Realisation
     from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
     from symobs.tasks.analysis.strata.strata import Place
+    from symobs.tasks.design.gain.gain_design import GainDesign
 
 #: With more states the proof of the digits takes seconds; with parameters no square roots write the factor in general.
 MOST_STATES, MOST_WITH_PARAMETERS = 12, 2
+#: Numbers over more square roots than these (of primes, and of sums of those) are not computed with: fields grow by 2 to each.
+_MOST_ROOTS = 4
 #: With more states no exact solution is looked for.
 _EXACT_UP_TO = 6
 #: An exact solution whose entries have more terms says less than its digits.
@@ -79,6 +83,9 @@ class OptimalGain(Result):
     needed: tuple[Condition, ...] = ()
 
     letter: ClassVar[str]
+    design_kind: ClassVar[type[GainDesign]]
+    #: What stands beside the gain among the answers.
+    of_loop: ClassVar[tuple[str, ...]]
     panels = ("plane",)
 
     @staticmethod
@@ -229,13 +236,22 @@ class OptimalGain(Result):
             return "undecided"
         return "no" if self.answer["obstacle"] is not None else super().verdict
 
+    @cached_property
+    def as_given(self) -> GainDesign | None:
+        """The gain as a given one: exact, else its certain digits, with which the loop is stable; None where there is none."""
+        gain = self.numbers[self.letter]
+        return None if gain is None else self.design_kind.of_given(self.plant, gain)
+
     @property
     def loop_matrix(self) -> Matrix | None:
-        """A − BK, or A − LC, of the exact gain, else of the certain digits; None where there is no gain."""
-        gain, m = self.answer[self.letter], self.plant.matrices
-        if gain is None and self.decimals:
-            gain = Matrix.of([[Fraction(entry) for entry in row] for row in self.decimals[self.letter]])
-        return None if gain is None else m.A - (m.B @ gain if self.letter == "K" else gain @ m.C)
+        """A − BK, or A − LC, of the gain as it is given."""
+        found: Matrix | None = self.numbers[self.of_loop[0]]
+        return found
+
+    @property
+    def systems(self) -> Mapping[str, Realisation]:
+        """Those of the gain as it is given."""
+        return super().systems if self.as_given is None else self.as_given.systems
 
     @cached_property
     def even(self) -> Scalar:
@@ -262,7 +278,7 @@ class OptimalGain(Result):
             determinant = Matrix.block([[regulator.B, regulator.A @ regulator.B][: plant.order]]).determinant()
             beside += [] if determinant.is_zero else [determinant]
         known = [apart_from_zero(value) for value in beside]
-        found = [value for value in found if not never_together_zero([value.numerator], known, signs)]
+        found = [value for value in found if not _never_beside(value.numerator, known, signs)]
         return tuple(plant.simplified(value) for value in (*found, *beside))
 
     @property
@@ -345,13 +361,33 @@ class OptimalGain(Result):
             moved = [to_disc(factor, v) for factor in factors] if plant.is_discrete else factors
             poles = tuple(root for factor in moved for root in roots_of(factor, v))
         found = {self.letter: answer[self.letter], "P": answer["P"], "polynomial": answer["polynomial"], "poles": poles}
-        asked = answer["question"]
+        gain, asked, m = answer[self.letter], answer["question"], plant.matrices
+        if self.letter == "K":
+            found["closed_loop_matrix"] = None if gain is None else (m.A - m.B @ gain).normal()
+        else:
+            found["A"] = None if gain is None else (m.A - gain @ m.C).normal()
+            found |= {"B_u": None if gain is None or not m.has_input else (m.B - gain @ m.D).normal(), "B_y": gain}
         return {**found, "modes": self.hidden_modes, **({} if asked is None else {"question": asked})}
+
+    @cached_property
+    def numbers(self) -> Mapping[str, Any]:
+        """The fields, and where no square roots write them the certain digits of gain and P as rational numbers."""
+        digits = self.decimals if self.answer[self.letter] is None else {}
+        exact = {name: Matrix.of([[Fraction(e) for e in row] for row in rows]) for name, rows in digits.items()}
+        of_gain = self.design_kind.of_given(self.plant, exact[self.letter]).fields if exact else {}
+        return {**self.fields, **{name: of_gain[name] for name in self.of_loop if name in of_gain}, **exact}
 
     @property
     def decimals(self) -> dict[str, Any]:
         """Certain digits of the gain and of P, where the data are numbers: to half a unit of the last place."""
-        digits: Enclosure | None = self.answer["digits"]
+        return self._decimals(self.answer["digits"])
+
+    def decimals_to(self, digits: int) -> dict[str, Any]:
+        """Return so many certain digits of the gain and of P, or those that there are."""
+        found = self.answer["digits"]
+        return self._decimals((found and enclosed_solution(self.regulator, digits)) or found)
+
+    def _decimals(self, digits: Enclosure | None) -> dict[str, Any]:
         if digits is None:
             return {}
         columns = [*map(list, zip(*digits.K, strict=True))]
@@ -370,6 +406,14 @@ def is_numeric(regulator: Regulator) -> bool:
 
 
 # -- what is asked of the weights --------------------------------------------------------------------------------------
+
+
+def _never_beside(value: Scalar, known: Iterable[Scalar], signs: Mapping[str, str]) -> bool:
+    """Return whether it is seen that a value vanishes nowhere where relations hold."""
+    try:
+        return never_together_zero([value], known, signs)
+    except TooLarge:
+        return False
 
 
 def _is_definite(matrix: Matrix, signs: Mapping[str, str]) -> bool:
@@ -547,6 +591,8 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     factors = stable_factors(H.characteristic_polynomial(variable), variable, signs, whole=whole)
     if sum(factor.degree(variable) for factor in factors) != n:
         raise NoFactor("the polynomial has roots on the boundary")
+    if not in_parameters and len({root.name for factor in factors for root in all_roots(factor)}) > _MOST_ROOTS:
+        raise NoFactor("its closed form is too long")
     product = Matrix.identity(2 * n)
     for factor in factors:
         product = _normal(product @ polynomial_of(factor, variable, H))

@@ -466,3 +466,13 @@ def test_the_notation_of_numbers_of_other_programs_is_no_product() -> None:
     assert parse_scalar("2d1 + 3x1 + 10x10", {"d1": "real", "x1": "real", "x10": "real"}) == parse_scalar(
         "2*d1 + 3*x1 + 10*x10"
     )
+
+
+@tabled
+def test_a_decimal_comma_is_refused_with_the_point(text: str, repair: str) -> None:
+    for read in (parse_matrix, parse_poles):
+        if read is parse_poles and text.startswith("["):
+            continue
+        with pytest.raises(ExpressionError) as caught:
+            read(text)
+        assert repair in caught.value.repair

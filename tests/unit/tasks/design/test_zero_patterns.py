@@ -171,7 +171,7 @@ def test_a_pattern_that_is_too_much_work_is_undecided(monkeypatch: pytest.Monkey
         return symobs.observer(symobs.StateSpace("[a 1; 0 0]", C="[1 0]"), poles=[-1, -2], zero="(2, 1)")
 
     def too_large(*_: Any) -> Any:
-        raise TooLarge
+        raise TooLarge("too large")
 
     assert (found().needed, found().verdict) == ((1,), "no")
     monkeypatch.setattr(triangular_basis, "triangular", too_large)
