@@ -47,18 +47,18 @@ if TYPE_CHECKING:
 def draw_copy(page: Builder) -> None:
     """Draw the observer as a copy of the plant: y − ŷ through L."""
     m = page.plant.matrices
-    page.signal("y_hat", page["C"] @ page["x_hat"], silent=True)
+    page.signal("y_hat", "C x_hat", silent=True)
     gains: dict[str, Member] = {name: page[name] for name in ("A", "C", "L")}
     if m.has_input:
         gains["B"] = page["B"]
     if m.has_feedthrough:
-        gains["D"] = -page["D"]
+        gains["D"] = page["-D"]
     page.diagram("observer_copy", say="drawn_copy", **gains)
 
 
 def draw_collected(page: Builder) -> None:
     """Draw the observer as one loop around A − LC."""
-    gains: dict[str, Member] = {"A": page["A"] - page["L"] @ page["C"], "L": page["L"]}
+    gains: dict[str, Member] = {"A": page["A - L C"], "L": page["L"]}
     if page.plant.matrices.has_input:
         gains["B"] = _driven(page)
     say = "drawn_collected" if "B" in gains else "drawn_collected_free"
@@ -70,10 +70,10 @@ def draw_compensator(page: Builder) -> None:
     A, C, K, L = (page[name] for name in "ACKL")
     plant = page.plant
     if plant.inputs == plant.outputs == 1 and not plant.matrices.has_feedthrough:
-        page.signal("y_hat", C @ page["x_hat"], silent=True)
+        page.signal("y_hat", "C x_hat", silent=True)
         page.diagram("observer_compensator", say="drawn_compensator", A=A, B=page["B"], C=C, K=-K, L=L)
         return
-    gains = {"A": A - L @ C, "B": _driven(page), "K": -K, "L": L}
+    gains = {"A": page["A - L C"], "B": _driven(page), "K": -K, "L": L}
     page.diagram("observer_controller", say="drawn_compensator", Plant=_plant(page), **gains)
 
 
@@ -100,26 +100,26 @@ def draw_unity_loop(page: Builder, plant: Member, compensator: Member) -> None:
 def draw_feedforward(page: Builder, *, minimal: bool) -> None:
     """Draw feedback from the estimate, and the feedforward."""
     observer = _minimal_order_observer(page) if minimal else _observer(page)
-    gains = {"K": -page["K"], "F": page["F_v"]}
+    gains = {"K": page["-K"], "F": page["F_v"]}
     say = "drawn_feedforward_minimal" if minimal else "drawn_feedforward"
     page.diagram("estimated_state_feedback", say=say, Plant=_plant(page), Observer=observer, **gains)
 
 
 def draw_state_feedforward(page: Builder) -> None:
     """Draw feedback from the state, and the feedforward."""
-    gains = {"K": -page["K"], "F": page["F_v"]}
+    gains = {"K": page["-K"], "F": page["F_v"]}
     page.diagram("state_feedforward", say="drawn_state_feedforward", Plant=_plant(page), **gains)
 
 
 def draw_integral_action(page: Builder) -> None:
     """Draw feedback from the state and from the integral of the control error."""
-    page.diagram("integral_loop", say="drawn_integral", Plant=_plant(page), K=-page["K"], Ki=page["k_I"])
+    page.diagram("integral_loop", say="drawn_integral", Plant=_plant(page), K=page["-K"], Ki=page["k_I"])
 
 
 def draw_tracking(page: Builder, *, minimal: bool) -> None:
     """Draw the generator of the reference, K and K_d, plant and observer."""
     observer = _minimal_order_observer(page) if minimal else _observer(page)
-    gains = {"K": page["K"], "Kd": -page["K_d"], "Ad": page["A_ref"]}
+    gains = {"K": page["K"], "Kd": page["-K_d"], "Ad": page["A_ref"]}
     say = "drawn_tracking_minimal" if minimal else "drawn_tracking"
     page.diagram("tracking_loop", say=say, Plant=_plant(page), Observer=observer, **gains)
 
@@ -131,33 +131,32 @@ def draw_minimal_order(page: Builder) -> None:
         gains["G"] = page["G_z"]
     figure = "minimal_order_observer"
     if page.plant.matrices.has_feedthrough:
-        figure, gains["D"] = "minimal_order_feedthrough", -page["D"]
-        gains["G"] = page["G_z"] + page["H_z"] @ page["D"]  # H is fed what is measured of the state
+        figure, gains["D"] = "minimal_order_feedthrough", page["-D"]
+        gains["G"] = page["G_z + H_z D"]  # H is fed what is measured of the state
     page.diagram(figure, say="drawn_minimal_order", z=_state(page), **gains)
 
 
 def _driven(page: Builder) -> Term:
-    return page["B"] - page["L"] @ page["D"] if page.plant.matrices.has_feedthrough else page["B"]
+    return page["B - L D"] if page.plant.matrices.has_feedthrough else page["B"]
 
 
 def _plant(page: Builder) -> Conjunction:
-    x, u = page["x"], page["u"]
-    output = page["C"] @ x
+    output = page["C x"]
     if page.plant.matrices.has_feedthrough:
-        output = output + page["D"] @ u
-    return Conjunction((relation(x.derivative, page["A"] @ x + page["B"] @ u), relation(page["y"], output)))
+        output = output + page["D u"]
+    return Conjunction((page.line("x' = A x + B u"), relation(page["y"], output)))
 
 
 def _observer(page: Builder) -> Conjunction:
-    x_hat, L = page["x_hat"], page["L"]
-    rate = (page["A"] - L @ page["C"]) @ x_hat + _driven(page) @ page["u"] + L @ page["y"]
+    x_hat = page["x_hat"]
+    rate = page("(A - L C) x_hat + {driven} u + L y", driven=_driven(page))
     return Conjunction((relation(x_hat.derivative, rate),))
 
 
 def _minimal_order_observer(page: Builder) -> Conjunction:
-    z, u, y = _state(page), page["u"], page["y"]
-    rate = page["F_z"] @ z + page["G_z"] @ u + page["H_z"] @ y
-    known = y - page["D"] @ u if page.plant.matrices.has_feedthrough else y
+    z, y = _state(page), page["y"]
+    rate = page("F_z {z} + G_z u + H_z y", z=z)
+    known = page["y - D u"] if page.plant.matrices.has_feedthrough else y
     estimate = page["M_z"] @ block([[known], [z]])
     return Conjunction((relation(z.derivative, rate), relation(page["x_hat"], estimate)))
 
@@ -266,7 +265,7 @@ def caution_poles(page: Builder, desired: DesiredPolynomial, phi: str, of: str) 
     elif is_marginal(polynomial, plant.variable, signs, discrete=discrete):
         facts.append(predicate("marginal", subject))
         key = "stays"
-        moved = page.s - page.value(1) if discrete else page.s
+        moved = page["s - 1"] if discrete else page.s
         rest = subject / moved
         if of == "state_feedback" and _is_stable(rest.scalar, page):
             facts.append(predicate("stable", rest))
@@ -536,7 +535,7 @@ def define_gain(
     if transposed:
         page.set(gain, shown)
         closing = [] if meanings else [last.as_value]
-        page.equal(relation(page[gain].T, *before, *closing), relation(page[gain], shown), say=say, answer=answer)
+        page.equal(relation(page[f"{gain}.T"], *before, *closing), relation(page[gain], shown), say=say, answer=answer)
     else:
         page.define(gain, *(before if before and not meanings else [*before, shown]), say=say, answer=answer)
     if meanings:
@@ -581,8 +580,8 @@ def combination(page: Builder, pairs: list[tuple[Term, Term]]) -> Term:
 
 def write_components(page: Builder, driven: Term | None) -> None:
     """Write x̂' = (A − LC) x̂ + (B − LD) u + L y row by row, and check that x̂ = x is a solution."""
-    A, C, L = (page[name] for name in "ACL")
-    closed = A - L @ C
+    L = page["L"]
+    closed = page["A - L C"]
     sources = [(L, page["y"])] if driven is None else [(driven, page["u"]), (L, page["y"])]
     entries = [entry for matrix in (closed, *(matrix for matrix, _ in sources)) for entry in matrix.value.entries]
     if (
@@ -602,7 +601,7 @@ def write_components(page: Builder, driven: Term | None) -> None:
         pairs += [(page.value(matrix.value.select([i], range(matrix.value.shape[1]))), s) for matrix, s in sources]
         rows.append(relation(part.derivative, combination(page, pairs)))
     page.equal(*rows, say="in_components")
-    right = closed @ page["x"]
+    right = page["(A - L C) x"]
     for matrix, signal in sources:
         right = right + matrix @ signal
-    page.verified("right_estimate_stays", consistent=relation(right, page["x"].derivative))
+    page.verified("right_estimate_stays", consistent=page.line("{right} = x'", right=right))

@@ -56,7 +56,7 @@ from symobs.tasks.analysis.strata.strata import (
     stratum_claims,
     stratum_of,
 )
-from symobs.tasks.result import Case, Result, equality
+from symobs.tasks.result import Case, Result, equality, holds
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -195,16 +195,16 @@ def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | No
     """Yield structure, kernel and rank from above, invariance; the kernel's claims hold `here`, on a stratum."""
     O, N, X = found["matrix"], found["kernel"], found["restricted"]
     order = O.shape[1]
-    yield equality(e["O"], e["upper"], e, "the blocks are C, C*A, ..., C*A**(n - 1)")
+    yield holds(e, "O = upper", "the blocks are C, C*A, ..., C*A**(n - 1)")
     witnesses = len(found["rows"]), len(found["columns"])
     yield Claim(relation(found["rank"], *witnesses), e, "the minor has the order of the rank")
     beside = N.shape[1], len(found["free"]), *X.shape
     yield Claim(relation(order - found["rank"], *beside), e, "the kernel has the dimension n - rank")
     if N.shape[1]:
         e, count = here or e, range(N.shape[1])
-        yield equality(e["O"] @ e["N"], Matrix.zeros(O.shape[0], len(count)), e)
+        yield holds(e, "O N = 0")
         yield Claim(relation(determinant_term(N.select(found["free"], count), e), "!==", 0), e)
-        yield equality(e["A"] @ e["N"], e["N"] @ e["X"], e)
+        yield holds(e, "A N = N X")
 
 
 def rank_losses(found: Mapping[str, Any], signs: Mapping[str, str]) -> tuple[Scalar, ...]:

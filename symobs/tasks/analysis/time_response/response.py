@@ -17,7 +17,6 @@ from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.matrix_power import PowerOf, matrix_power
 from symobs.exact.time_functions.quasipolynomial import Quasipolynomial, Table, matrix_at, product, table_of
 from symobs.formula.figures import PlottedResponse, TimeResponse
-from symobs.formula.tree.term import Term, block
 from symobs.formula.tree.written import written
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ShapeMismatch
@@ -58,6 +57,7 @@ if TYPE_CHECKING:
     from symobs.exact.time_functions.matrix_exponential import Exponential
     from symobs.formula.figures import Interval
     from symobs.formula.tree import Environment, Relation
+    from symobs.formula.tree.term import Term
     from symobs.proof.certificate.claims import Claim
     from symobs.proof.derivation.builder import Builder, Slot
     from symobs.system import StateSpace
@@ -244,7 +244,7 @@ def plot_response(page: Builder, begins: Matrix, model: InputModel | None) -> No
             relation(functions.at("t", 0), model.start),
             relation(page["u_t"], V @ functions),
         )
-        whole = block([[page["A"], page["B"] @ V], [page.value(Matrix.zeros(model.S.shape[0], order)), S]])
+        whole = page("[A, B {V}; {value}, {S}]", V=V, value=Matrix.zeros(model.S.shape[0], order), S=S)
         row = Matrix.block([[row, Matrix.zeros(order, model.S.shape[0])]])
         states, starts = ("x", "w_e"), (*starts, _numbers(model.start))
         slots = {"input": relation(page["u"], w if Matrix.identity(V.value.shape[1]) == model.V else V @ w)}
@@ -253,7 +253,7 @@ def plot_response(page: Builder, begins: Matrix, model: InputModel | None) -> No
             slots["exosystem"] = relation(w.derivative, S @ w)
             say = "plot_response_forced"
     elif page.plant.matrices.has_input:
-        page.signal("u", page.value(Matrix.zeros(page.plant.inputs, order)) @ page["x"], silent=True)
+        page.signal("u", page("{value} x", value=Matrix.zeros(page.plant.inputs, order)), silent=True)
     if signals := _signals(page.plant, row, model):
         plot_courses(page, states, starts, whole, signals, _end(whole.value), say, **slots)
 
@@ -504,7 +504,7 @@ def _forced(page: Builder, value: Matrix) -> Term:
     """Define the motion from rest, which is held to its differential equation without words."""
     x_f = page.define("x_f", value, say="output_forced", closing=False)
     rate = page.line("{rate} = A x_f + B u_t", rate=rate_of(x_f))
-    page.conclude_silently(rate, page.line("{start} = 0", start=x_f.at("t", 0)))
+    page.conclude_silently(rate, page.line("{start} = 0", start=page["x_f(t = 0)"]))
     return x_f
 
 

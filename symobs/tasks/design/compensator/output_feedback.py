@@ -501,7 +501,7 @@ def caution_hidden(page: Builder, F: Matrix | Scalar, own_matrix: Matrix) -> Non
     hidden_stability = stability(hidden, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
     if hidden_stability.verdict == "yes":
         return
-    own = page["A_c"].pencil.apply("det")
+    own = page["det(pencil(A_c))"]
     rest = page.term(Quotient(own.formula, Literal(monic(poles, plant.variable))))
     if rest.value != hidden:
         return

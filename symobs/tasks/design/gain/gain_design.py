@@ -494,10 +494,10 @@ class PlacementProblem:
 
     def error_determinant(self, page: Builder) -> Term:
         """Return det(sI − A + LC) or det(sI − A + BK)."""
-        return (page["A"].pencil + self._gain_term(page)).apply("det")
+        return page("det(pencil(A) + {gain_term})", gain_term=self._gain_term(page))
 
     def _gain_term(self, page: Builder) -> Term:
-        return page["L"] @ page["C"] if self.gain == "L" else page["B"] @ page["K"]
+        return page["L C"] if self.gain == "L" else page["B K"]
 
 
 OBSERVER = PlacementProblem("observer", "L", "O", "observability", "o", "beta_")

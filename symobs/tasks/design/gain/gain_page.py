@@ -74,9 +74,9 @@ def write_ackermann_formula(page: Builder, _: GainDesign, side: PlacementProblem
     order = page.plant.order
     unit = page.value(Matrix.unit(order, order - 1))
     if side.gain == "L":
-        last = page.define("q_o", page["O"].inverse @ unit, say="last_column")
+        last = page.define("q_o", page["O^-1"] @ unit, say="last_column")
     else:
-        last = page.define("q_c", unit.T @ page["Ctr"].inverse, say="last_row")
+        last = page.define("q_c", unit.T @ page["Ctr^-1"], say="last_row")
     polynomial = page["A"].apply(f"{side.phi}_at")
     factors = [_factor_at(page, factor, power) for factor, power in desired.grouped()]
     at = product(factors)
@@ -105,17 +105,17 @@ def _factor_at(page: Builder, factor: Scalar, power: int) -> Term:
 
 def write_matching(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write det(sI − A + LC) with unknown l₁ … lₙ, its coefficients equated to those of φ, the linear system, its solution."""
-    order, variable = page.plant.order, page.plant.variable
+    variable = page.plant.variable
     system = matching(design.dual_pair(page.plant), desired)
     unknown = gain_letters(page, side.gain, system.solution)
     gain = page.define(side.gain, design.transpose_for_task(unknown), say="unknown_gain")
     moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
-    determinant = (page.s @ page.identity(order) - page["A"] + moved).apply("det")
+    determinant = page("det(s I - A + {moved})", moved=moved)
     polynomial = determinant.scalar
     page.equal(relation(determinant, page.value(polynomial)), say="polynomial_of_unknown")
     pairs = zip(polynomial.coefficients(variable)[1:], desired.coefficients, strict=True)
     page.equal(*(relation(found, target) for found, target in pairs), say="equal_coefficients")
-    page.equal(relation(page.value(system.M) @ page.value(unknown), system.r), say="linear_system")
+    page.equal(relation(page("{M} {unknown}", M=system.M, unknown=unknown), system.r), say="linear_system")
     define_gain(page, side.gain, design.transpose_for_task(system.solution), say="solution_of_system")
 
 
@@ -125,11 +125,11 @@ def write_companion(page: Builder, _: GainDesign, side: PlacementProblem, desire
     found = page.plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
     unit = page.value(Matrix.unit(order, order - 1))
     if side.gain == "L":
-        A, driven = page["A"].T, page["C"].T
-        q = page.define("q_o", page["O"].inverse @ unit, say="companion_vector_observer").T
+        A, driven = page["A.T"], page["C.T"]
+        q = page.define("q_o", page["O^-1"] @ unit, say="companion_vector_observer").T
     else:
         A, driven = page["A"], page["B"]
-        q = page.define("q_c", unit.T @ page["Ctr"].inverse, say="companion_vector_state_feedback")
+        q = page.define("q_c", unit.T @ page["Ctr^-1"], say="companion_vector_state_feedback")
     T = page.define("T", block([[q @ A**k if k else q] for k in range(order)]), say="companion_rows")
     page.equal(relation(T @ A @ T.inverse, companion(found)), relation(T @ driven, unit), say="companion_reached")
     wanted = [page.value(c) for c in reversed(desired.coefficients)]
@@ -166,9 +166,11 @@ def write_row_reduction(page: Builder, design: GainDesign, side: PlacementProble
     for number, part in enumerate(found, 1):
         _reduce(page, side, part, number)
     psi = page.define("Psi", Matrix.block([[part.psi for part in found]]), say="upper_parts")
-    f = page.define("f_psi", Matrix.block([[part.f for part in found]]))
-    page.equal(relation(psi.apply("det"), determinant_form(page, psi.value.determinant())), say="with_determinant")
-    gain, shown = f @ psi.inverse, f.as_value @ psi.as_value.inverse
+    page.define("f_psi", Matrix.block([[part.f for part in found]]))
+    page.equal(
+        page.line("det(Psi) = {value}", value=determinant_form(page, psi.value.determinant())), say="with_determinant"
+    )
+    gain, shown = page["f_psi Psi^-1"], page["#f_psi (#Psi)^-1"]
     unique = "_unique" if (page.plant.outputs if side.gain == "L" else page.plant.inputs) == 1 else ""
     if side.gain == "L":
         define_gain(page, "L", gain, shown, say=f"row_reduced{unique}_observer", transposed=True)
@@ -179,7 +181,7 @@ def write_row_reduction(page: Builder, design: GainDesign, side: PlacementProble
 
 def _open_eigenvalues(page: Builder, side: PlacementProblem) -> None:
     """Say where the eigenvalues are without the gain, where they can be written down."""
-    own = (page.s @ page.identity(page.plant.order) - page["A"]).apply("det")
+    own = page["det(s I - A)"]
     factors = own.scalar.factors()[1]
     if own.scalar.names <= {page.plant.variable} and all(f.degree(page.plant.variable) <= 2 for f, _ in factors):
         page.remark(
@@ -192,7 +194,7 @@ def _rounded_too_early(page: Builder, gain: Matrix) -> None:
     near = page.decimals(page["Psi"].value)
     if not near or near[1].value.determinant().is_zero:
         return
-    spoiled = page["f_psi"].as_value @ near[1].inverse
+    spoiled = page["#f_psi"] @ near[1].inverse
     shown = page.decimals(spoiled.value)
     pairs = zip(spoiled.value.entries, gain.entries, strict=True)
     if shown and any(abs((wrong - right).fraction()) > _HARM * abs(right.fraction()) for wrong, right in pairs):
@@ -220,7 +222,7 @@ def _reduce(page: Builder, side: PlacementProblem, part: Reduction, number: int)
 def _matrix(page: Builder, side: PlacementProblem, part: Reduction) -> Term:
     """Return [λI − Aᵀ : Cᵀ] (or [λI − A : B]) in letters; of a block J its blocks."""
     order, J = part.order, part.J
-    A, driven = (page["A"].T, page["C"].T) if side.gain == "L" else (page["A"], page["B"])
+    A, driven = (page["A.T"], page["C.T"]) if side.gain == "L" else (page["A"], page["B"])
     nothing, empty = page.value(Matrix.zeros(order, order)), page.value(Matrix.zeros(*driven.value.shape))
     rows = []
     for j in range(part.size):
@@ -271,8 +273,8 @@ def _pair(part: Reduction) -> bool:
 def _named(page: Builder, part: Reduction) -> Evaluated:
     """Return the pole, or the factor of φ, of a reduction."""
     if part.size == 1:
-        return Evaluated(page.value(part.J).apply("det").formula, Literal(part.J[0, 0]))
-    pencil = page.s @ page.identity(part.size) - page.value(part.J)
+        return Evaluated(page("det({J})", J=part.J).formula, Literal(part.J[0, 0]))
+    pencil = page("s I - {J}", J=part.J)
     return Evaluated(pencil.apply("det").formula, Literal(part.J.characteristic_polynomial(page.plant.variable)))
 
 
@@ -309,7 +311,7 @@ def write_gain(
         write = choose(design.task, style, style).page or _write_gain_alone
         asks = "polynomials" if write is write_canonical and not (side.gain == "K" and _is_canonical(page)) else "asks"
         write(page, design, side, name_coefficients(page, design, side, asks))
-    page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
+    page.conclude_silently(page.line(f"{side.gain} = {{gain}}", gain=design.answer[side.gain]))
     page.in_decimals(side.gain)
     _verified(page, design, side)
     if cases:
@@ -420,7 +422,7 @@ def _say_canonical(page: Builder) -> None:
         relation(tested.apply("rank"), order),
         relation(page["A"], companion(chi.coefficients(variable)[1:])),
         relation(page["B"], Matrix.unit(order, order - 1)),
-        chi=relation((page.s @ page.identity(order) - page["A"]).apply("det"), page.value(chi)),
+        chi=page.line("det(s I - A) = {chi}", chi=chi),
     )
 
 
@@ -433,14 +435,14 @@ def write_canonical(page: Builder, _: GainDesign, side: PlacementProblem, desire
         found = plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
         define_gain(page, "K", _difference(page, wanted, list(found)))
         return
-    A = page["A"].T if side.gain == "L" else page["A"]
-    matrix = page[side.matrix].T if side.gain == "L" else page[side.matrix]
+    A = page["A.T"] if side.gain == "L" else page["A"]
+    matrix = page[f"{side.matrix}.T"] if side.gain == "L" else page[side.matrix]
     chi = plant.matrices.A.characteristic_polynomial(variable)
     found = chi.coefficients(variable)[1:]
     said = getattr(page.steps[-1], "sentence", None)
     is_announced = said is not None and said.key == f"polynomials_{side.kind}"  # beside φ
     say = "" if is_announced else f"open_{side.kind}"
-    page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=say)
+    page.define("chi", page("det(s I - {A})", A=A), say=say)
     hankel = page.value(hankel_of(found))
     written = [matrix.as_value @ hankel] if order > 1 else []
     V = page.define(f"V_{side.index}", matrix @ hankel, *written, say=f"canonical_{side.kind}")
@@ -514,7 +516,7 @@ def _fixed(page: Builder, side: PlacementProblem, kernel: Matrix, restricted: Ma
     """Introduce N and X, and return the polynomial of the modes that no gain moves."""
     for name, value in zip(side.hidden, (kernel, restricted), strict=True):
         page.set(name, value)
-    return hidden_polynomial(page, kernel.shape[1], side.hidden[1])
+    return hidden_polynomial(page, side.hidden[1])
 
 
 def _given_gain(page: Builder, design: GainDesign, side: PlacementProblem, *, of_loop: bool) -> None:
@@ -605,7 +607,9 @@ def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side
     page.conclude(key, *bound, predicate("polynomial", quotient), modes=modes)
     if not own:
         page.define(side.gain, gain)
-    page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
+    page.conclude_silently(
+        page.line(f"{{error_determinant}} = {side.phi}", error_determinant=side.error_determinant(page))
+    )
     steps = outside_cases(page, result, page.steps) or [undecided(page, cases[-1])]
     if steps != page.steps:  # a gain that is defined there is none of the further cases
         anew = set_anew(before, page.environment)

@@ -174,7 +174,7 @@ class OutputRegulation(Result):
             raise CertificateRejected(message)
         e = self.meanings(**self.exogenous._asdict())
         if K is not self.loop.answer["K"]:
-            yield holds(e, "K = {K}", "K is the certified gain", K=self.loop.answer["K"])
+            yield holds(e, "K = {value}", "K is the certified gain", value=self.loop.answer["K"])
         if U is not None:
             yield holds(e, "U*A + V*C = S*U")
             yield holds(e, "U*B + V*D = 0")
@@ -550,8 +550,8 @@ def _exosystem(page: Builder, design: OutputRegulation) -> None:
     page.set("Q_r", Q)
     if design.estimator is not None and not page.defines("E_d"):
         page.set("E_d", E)
-    page.dynamics("w_e", page["S_w w_e"], silent=True)
-    page.signal("r_w", page["Q_r w_e"], silent=True)
+    page.dynamics("w_e", "S_w w_e", silent=True)
+    page.signal("r_w", "Q_r w_e", silent=True)
     page.equal(
         "w_e' = S_w w_e = #S_w w_e",
         "r_w = Q_r w_e = #Q_r w_e",
@@ -588,7 +588,7 @@ def _impossible(page: Builder, design: OutputRegulation) -> None:
     page.set("V_r", answer["V"])
     page.equal("U_r = #", "V_r = #", say="regulation_obstacle")
     D = page["D"] if plant.matrices.has_feedthrough else plant.matrices.D
-    annuls = page.line("[U_r, V_r] [A, B; C, D] = [S_w U_r, {zero}]", D=D, zero=Matrix.zeros(q, plant.inputs))
+    annuls = page.line("[U_r, V_r] [A, B; C, {D}] = [S_w U_r, {zero}]", D=D, zero=Matrix.zeros(q, plant.inputs))
     disturbed = design.exogenous.disturbs
     found = page.value(design.obstacle if disturbed else -design.obstacle)
     page.conclude("regulation_impossible_E" if disturbed else "regulation_impossible", annuls=annuls, trace=found)
@@ -596,7 +596,7 @@ def _impossible(page: Builder, design: OutputRegulation) -> None:
     if not blocked:
         return
     roots = product_of(factor for factor, _ in blocked)
-    pencil = page("[A - s I, B; C, D]", D=D)
+    pencil = page("[A - s I, B; C, {D}]", D=D)
     of_S = page["det(pencil(S_w))"].scalar
     is_zero = rank(pencil.value, plant.ideal) == n + p
     page.conclude(
@@ -610,14 +610,14 @@ def _impossible(page: Builder, design: OutputRegulation) -> None:
 def _state_law(page: Builder, design: OutputRegulation) -> None:
     """Write u = −K x + F w, and that x − Πw obeys the closed loop."""
     page.define("F_w", "Gamma_w + K Pi_w", say="regulation_gain", answer=True)
-    page.signal("u", page["(-K) x + F_w w_e"], say="regulation_law")
+    page.signal("u", "(-K) x + F_w w_e", say="regulation_law")
     _deviation(page, design)
 
 
 def _deviation(page: Builder, design: OutputRegulation) -> None:
     """Write the equation of x − Πw and the control error, and whether they vanish."""
     through = page.plant.matrices.has_feedthrough
-    page.signal("x_w", page["x - Pi_w w_e"], silent=True)
+    page.signal("x_w", "x - Pi_w w_e", silent=True)
     rate, seen = "(A - B K) x_w", "(C - D K) x_w" if through else "C x_w"
     if design.estimator is not None:
         rate += " + B (K e - F_w e_w)"
@@ -652,7 +652,7 @@ def _observer(page: Builder, design: OutputRegulation, estimator: DisturbanceObs
         return
     write_observer_of_both(page, estimator, page["E_d w_hat"], say="regulation_estimates")
     page.define("F_w", "Gamma_w + K Pi_w", say="regulation_gain", answer=True)
-    page.signal("u", page["(-K) x_hat + F_w w_hat"], say="regulation_law")
+    page.signal("u", "(-K) x_hat + F_w w_hat", say="regulation_law")
     _deviation(page, design)
     zero = Matrix.zeros(design.plant.order + design.exogenous.order, design.plant.order)
     loop = page("[A - B K, [B K, (-B) F_w]; {zero}, A_hat - L C_hat]", zero=zero)

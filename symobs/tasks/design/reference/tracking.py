@@ -255,7 +255,7 @@ def write_tracking(page: Builder, design: TrackingDesign) -> None:
 def _reference(page: Builder, design: TrackingDesign) -> None:
     """Write ẋ_d = A_d x_d."""
     page.set("A_ref", design.reference)
-    page.dynamics("x_d", page["A_ref x_d"], silent=True)
+    page.dynamics("x_d", "A_ref x_d", silent=True)
     page.equal("x_d' = A_ref x_d", "A_ref = #", say="reference")
 
 
@@ -268,7 +268,7 @@ def _law(page: Builder, design: TrackingDesign) -> None:
     shown = page["K_1 x_1 + K_2 x_2_hat" if minimal else "K x_hat"]
     page.signal("u", page("K x_d - {shown} - K_d x_d", shown=shown), silent=True)
     page.equal(page.line("u = K (x_d - x_hat) - K_d x_d = (K - K_d) x_d - {shown}", shown=shown), say="tracking_law")
-    page.signal("e_d", page["x_d - x"], silent=True)
+    page.signal("e_d", "x_d - x", silent=True)
     through = "B K_2 e_2" if minimal else "B K e"
     error = page.line("e_d = x_d - x")
     page.equal(f"e_d' = (A - B K) e_d + (A_ref - A + B K_d) x_d - {through}", say="tracking_error", error=error)
