@@ -27,7 +27,7 @@ from symobs.exact import (
     solve_or_refute,
 )
 from symobs.exact.algebraic.enclosure import is_number
-from symobs.exact.core.generators import identities
+from symobs.exact.core.generators import all_roots, identities
 from symobs.exact.floating.riccati import enclosed_solution, hamiltonian
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import identity
@@ -57,6 +57,8 @@ if TYPE_CHECKING:
 
 #: With more states the proof of the digits takes seconds; with parameters no square roots write the factor in general.
 MOST_STATES, MOST_WITH_PARAMETERS = 12, 2
+#: Numbers over more square roots than these (of primes, and of sums of those) are not computed with: fields grow by 2 to each.
+_MOST_ROOTS = 4
 #: With more states no exact solution is looked for.
 _EXACT_UP_TO = 6
 #: An exact solution whose entries have more terms says less than its digits.
@@ -589,6 +591,8 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
     factors = stable_factors(H.characteristic_polynomial(variable), variable, signs, whole=whole)
     if sum(factor.degree(variable) for factor in factors) != n:
         raise NoFactor("the polynomial has roots on the boundary")
+    if not in_parameters and len({root.name for factor in factors for root in all_roots(factor)}) > _MOST_ROOTS:
+        raise NoFactor("its closed form is too long")
     product = Matrix.identity(2 * n)
     for factor in factors:
         product = _normal(product @ polynomial_of(factor, variable, H))
