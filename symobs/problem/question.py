@@ -126,7 +126,7 @@ def _state_data(page: Builder, asked: Iterable[tuple[Task, Mapping[str, Any]]]) 
     """State the plant, or the polynomial, and the matrices of the specification."""
     polynomial = page.plant.polynomial
     if polynomial is None:
-        given(page)
+        given(page, is_question=True)
     else:
         with page.section("given"):
             page.given(relation(page["chi_p"], polynomial))
