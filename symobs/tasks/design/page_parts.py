@@ -29,7 +29,7 @@ from symobs.proof.derivation.wording_check import Said, rests
 from symobs.stability.criteria.stability import is_beyond, is_marginal, stability
 from symobs.tasks.analysis.page_parts import environment_on, is_narrow, spread
 from symobs.tasks.analysis.strata.strata import distances, systems_of
-from symobs.tasks.analysis.time_response.response import TIMES, Signals, plot_courses, rounded_up, rows_of, window_of
+from symobs.tasks.analysis.time_response.courses import TIMES, Signals, plot_courses, rounded_up, rows_of, window_of
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 
 if TYPE_CHECKING:
