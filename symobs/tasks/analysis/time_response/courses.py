@@ -20,16 +20,10 @@ if TYPE_CHECKING:
 
 #: The slowest mode has fallen to e⁻⁶, a quarter of a per cent, at the end.
 TIMES = 6.0
-
-
 #: How many segments are drawn, more where a response changes fast at first: none passes by the values between its ends at
 #: more than this part of the window.
 _STEPS, _BETWEEN, _PARTS = (400, 800, 1600), Fraction(1, 110), 10**6
-
-
 _ROUND = (Fraction(1), Fraction(3, 2), Fraction(2), Fraction(3), Fraction(4), Fraction(5), Fraction(6), Fraction(8))
-
-
 #: Signals, each with its rows as a matrix times the state, and whether it is dashed.
 Signals: TypeAlias = "Sequence[tuple[str, Matrix, bool]]"
 

@@ -21,12 +21,8 @@ if TYPE_CHECKING:
 
 #: More courses cannot be told from one another.
 _MOST_COURSES = 6
-
-
 #: What is drawn of an undamped oscillation, in periods; of growth, in time constants; and where nothing has a time scale.
 _PERIODS, _GROWTHS, _ANY = 3, 3.0, Fraction(10)
-
-
 _NEAR_ZERO = 1e-9
 
 
