@@ -142,12 +142,8 @@ def set_anew(outer: Environment, inner: Environment) -> tuple[str, ...]:
 
 #: A polynomial of more terms is not written out among words.
 WRITTEN_UP_TO = 200
-
-
 #: A row of a matrix that is longer than this, written in one line, does not fit beside others.
 _WIDEST = 80
-
-
 #: More decimals of the data are not told as fractions.
 _DECIMALS = 4
 

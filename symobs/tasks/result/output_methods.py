@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 
 _IMAGINARY = re.compile(r"\bI\b")
-
-
 _RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
 
 
@@ -265,8 +263,6 @@ class OutputMethods:
 
 #: The significant digits of a page whose data are typed as decimals, and the most that can be asked for.
 DIGITS, MOST_DIGITS = 5, 40
-
-
 #: How the literature is told below a page.
 REFERENCES = ("none", "short", "full")
 

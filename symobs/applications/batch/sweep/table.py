@@ -47,17 +47,9 @@ class Swept(Protocol):
 
 
 SCHEMA = "symobs-sweep/1"
-
-
 MOST_CSV_ROWS = 10**6
-
-
 ROW_GROUP = 65_536
-
-
 PART = 2**20
-
-
 _LAST_COLUMNS = ("status", "case", "checked")
 
 
@@ -271,11 +263,7 @@ def _taken(batches: Iterator[Any], rows: int) -> Iterator[Any]:
 
 #: More points need somebody who says that they are meant.
 MOST_POINTS = 10**8
-
-
 _ENTRY = re.compile(r"\s*([A-Za-z][A-Za-z0-9_]*)\s*=\s*(.+?)\s*", re.DOTALL)
-
-
 _EXAMPLE = "write for example l=0.1:0.1:10, m=[1, 2, 5], k=0:1/11 (11 points) or g=decade(1e-3:1e3)"
 
 

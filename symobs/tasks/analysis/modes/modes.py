@@ -61,12 +61,8 @@ if TYPE_CHECKING:
 
 #: Up to this order a rank at an eigenvalue is proved by a minor there; with parameters up to the second.
 _MINORS, _MINORS_WITH_PARAMETERS = 6, 4
-
-
 #: With parameters an extension of higher degree is left to the polynomial of the fixed modes.
 _DEGREE_WITH_PARAMETERS = 2
-
-
 TESTS: dict[str, type[RankResult]] = {"observability": Observability, "controllability": Controllability}
 
 

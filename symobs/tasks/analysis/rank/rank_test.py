@@ -73,8 +73,6 @@ if TYPE_CHECKING:
 
 #: The most sets that are tried, and terms of the matrices; the minors of a set that are tried first, and the most.
 _SETS, _TERMS = 200, 400
-
-
 _MINORS = (60, 500)
 
 

@@ -296,12 +296,8 @@ def transfer_function(plant: StateSpace, *, method: Name = "auto") -> Result:
 
 #: Polynomials in the parameters that must not vanish together.
 System: TypeAlias = tuple[Scalar, ...]
-
-
 #: The most minors of 𝒪𝒞 that are looked at: a subset of them vanishes together on more than the true locus, never less.
 _MINORS = 40
-
-
 #: What the numbers of a combination of minors are called; no parameter's name begins so.
 _NUMBER = "_t"
 

@@ -44,8 +44,6 @@ Signs = dict[Scalar, str]
 _MOST_BRANCHES = 4
 #: What is said of a mode whose discriminant is negative or positive.
 _BRANCHES = {"<": "branch_under", ">": "branch_over"}
-
-
 #: The signs that a value of a sign cannot have.
 _EXCLUDES = {"negative": {"positive", "nonnegative", "zero"}, "positive": {"negative", "nonpositive", "zero"}}
 

@@ -87,12 +87,8 @@ if TYPE_CHECKING:
 
 
 KINDS_OF = ("observability", "controllability")
-
-
 #: Determinants of entries with more terms than this together are left out.
 _MOST_TERMS = 60
-
-
 #: Up to this order there is always one.
 _ALWAYS_WITH_DETERMINANT = 2
 

@@ -64,12 +64,8 @@ if TYPE_CHECKING:
 
 #: Orders for which the inverse of a Gramian in closed form is still readable.
 _MOST_STATES = 4
-
-
 #: Gramians of more terms than this are not inverted.
 _MOST_TERMS = 16
-
-
 END = Scalar.symbol("T")
 
 

@@ -17,14 +17,16 @@ from symobs.stability.inequalities.simplify import as_inequality
 from symobs.system.specification import DesiredPolynomial
 from symobs.tasks.analysis.page_parts import factored_form, formula_of_factored, given, in_blocks, is_narrow
 from symobs.tasks.analysis.rank.rank_page import square_test
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
+from symobs.tasks.design.block_diagrams import draw_compensator, draw_loop, draw_unity_loop
 from symobs.tasks.design.compensator.compensator import CompensatorDesign
 from symobs.tasks.design.compensator.output_feedback import caution_hidden
+from symobs.tasks.design.error_plots import plot_estimate
 from symobs.tasks.design.full_order.observer import model_and_innovation, write_observer
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, PlacementProblem, page_style
 from symobs.tasks.design.gain.gain_page import name_coefficients, say_as_required, write_case, write_cases, write_gain
-from symobs.tasks.design.page_parts import caution_poles, draw_compensator, draw_loop, draw_unity_loop, plot_estimate
+from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 from symobs.tasks.result import page_of
 

@@ -10,7 +10,7 @@ from symobs.proof.derivation import CaseStep, Conclude
 from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import formula_of_factored, given, in_blocks, is_narrow
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
 from symobs.tasks.design.compensator.compensator import KnownState
 from symobs.tasks.design.compensator.compensator_page import (
     Namer,
@@ -25,10 +25,11 @@ from symobs.tasks.design.compensator.compensator_page import (
 )
 from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrderCompensator
 from symobs.tasks.design.compensator.output_feedback import caution_hidden
+from symobs.tasks.design.components import combination
+from symobs.tasks.design.error_plots import plot_estimate
 from symobs.tasks.design.full_order.observer import write_observer
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, page_style
 from symobs.tasks.design.gain.gain_page import write_cases, write_gain
-from symobs.tasks.design.page_parts import combination, plot_estimate
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.tasks.design.reduced_order.reduced_order_observer_page import observer_state, write_observer_of_rest
 from symobs.tasks.result import page_of

@@ -41,8 +41,6 @@ if TYPE_CHECKING:
 
 #: What one half of a compensator is asked for by: its polynomial, or its gain.
 Asked: TypeAlias = "DesiredPolynomial | Matrix"
-
-
 #: The Hurwitz determinants of a compensator with more terms than this take seconds, and only points are tried.
 _DECIDABLE_TERMS = 400
 
@@ -457,8 +455,6 @@ def _factors_of(design: GainDesign | ReducedOrderObserver) -> tuple[tuple[Scalar
 
 #: A polynomial of more terms is not decided.
 _TERMS = 400
-
-
 #: The most inputs, or outputs, from all of whose minors the poles of F are found.
 _MOST = 3
 

@@ -30,7 +30,9 @@ from symobs.tasks.design.gain.gain_cases import design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
 from symobs.tasks.design.gain.gain_page import say_as_required
-from symobs.tasks.design.page_parts import caution_poles, define_gain, say_unassignable
+from symobs.tasks.design.named_gains import define_gain
+from symobs.tasks.design.pole_cautions import caution_poles
+from symobs.tasks.design.unassignable import say_unassignable
 from symobs.tasks.result import Case, Result, choose, equality, holds, method, page_of, poles_of, task
 from symobs.tasks.result.control_systems import Controller
 

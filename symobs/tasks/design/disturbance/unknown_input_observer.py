@@ -25,20 +25,16 @@ from symobs.tasks.analysis.page_parts import case_steps, given, is_narrow, say_s
 from symobs.tasks.analysis.rank.rank_page import assume_rank
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import common_places, found_once, solved
+from symobs.tasks.design.components import combination, stand_in_line, summed
 from symobs.tasks.design.disturbance.disturbance_input import read_disturbance_input, with_disturbance
+from symobs.tasks.design.error_plots import plot_error
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_page import say_as_required
-from symobs.tasks.design.page_parts import (
-    caution_poles,
-    combination,
-    define_gain,
-    plot_error,
-    say_unassignable,
-    stand_in_line,
-    summed,
-)
+from symobs.tasks.design.named_gains import define_gain
+from symobs.tasks.design.pole_cautions import caution_poles
+from symobs.tasks.design.unassignable import say_unassignable
 from symobs.tasks.result import Case, Result, choose, equality, holds, method, page_of, task
 from symobs.tasks.result.control_systems import Controller, observer_of
 

@@ -11,10 +11,12 @@ from symobs.ground.dataclass import dataclass
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.tasks.analysis.page_parts import given, spread
 from symobs.tasks.analysis.rank.observability import Observability
+from symobs.tasks.design.block_diagrams import draw_collected, draw_copy
+from symobs.tasks.design.components import write_components
+from symobs.tasks.design.error_plots import plot_error
 from symobs.tasks.design.full_order.placement_methods import register_methods
 from symobs.tasks.design.gain.gain_design import OBSERVER, GainDesign, design_gain, page_style
 from symobs.tasks.design.gain.gain_page import write_cases, write_gain
-from symobs.tasks.design.page_parts import draw_collected, draw_copy, plot_error, write_components
 from symobs.tasks.design.pole_placement.multiple_outputs import pair_of
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 from symobs.tasks.result import Case, Result, task

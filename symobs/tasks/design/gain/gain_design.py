@@ -21,7 +21,7 @@ from symobs.stability.criteria.stability import StabilityVerdict, stability
 from symobs.system.specification import desired_polynomial, over_common_data, read_entries, read_gain, reject_both
 from symobs.tasks.analysis.page_parts import HIDDEN
 from symobs.tasks.analysis.strata.strata import region_of
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_claims import (
     claims_of_kernel_family,
     excluded_claims,
@@ -501,6 +501,4 @@ class PlacementProblem:
 
 
 OBSERVER = PlacementProblem("observer", "L", "O", "observability", "o", "beta_")
-
-
 FEEDBACK = PlacementProblem("state_feedback", "K", "Ctr", "controllability", "c", "alpha_")

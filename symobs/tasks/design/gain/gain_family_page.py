@@ -12,10 +12,10 @@ from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.stability.criteria.stability import monic
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import determinant_form, formula_of_factored, spread, stratum_of, undecided
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_design import GainDesign
 from symobs.tasks.design.gain.gain_kind import AlgebraicGain
-from symobs.tasks.design.page_parts import define_gain, entry_letters, gain_letters
+from symobs.tasks.design.named_gains import define_gain, entry_letters, gain_letters
 from symobs.tasks.design.pole_placement.sylvester import Sylvester, charts_of
 
 if TYPE_CHECKING:

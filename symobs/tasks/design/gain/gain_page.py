@@ -39,7 +39,7 @@ from symobs.tasks.analysis.page_parts import (
     undecided,
 )
 from symobs.tasks.analysis.rank.rank_page import outside_cases, square_test
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_design import OBSERVER, GainDesign, PlacementProblem
 from symobs.tasks.design.gain.gain_family_page import (
     another_gain,
@@ -50,10 +50,12 @@ from symobs.tasks.design.gain.gain_family_page import (
     write_sylvester,
 )
 from symobs.tasks.design.gain.gain_kind import GivenGain, UnassignableGain
-from symobs.tasks.design.page_parts import caution_poles, define_gain, gain_letters, over_fixed, say_unassignable
+from symobs.tasks.design.named_gains import define_gain, gain_letters
+from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.pole_placement.row_reduction import Reduction, gain_of, row_reduction
 from symobs.tasks.design.pole_placement.single_output import matching
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
+from symobs.tasks.design.unassignable import over_fixed, say_unassignable
 from symobs.tasks.result import choose
 
 if TYPE_CHECKING:

@@ -268,8 +268,6 @@ def _of_kept_modes(advice: AdvisedPoles) -> Iterator[Case]:
 
 #: Zero and pole are near each other where they differ by less than this part of the zero.
 _NEAR = 10
-
-
 #: A gain is huge where an entry is more than this many times the largest of A, and of 1.
 _HUGE = 100
 

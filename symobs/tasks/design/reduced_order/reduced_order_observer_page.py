@@ -14,21 +14,17 @@ from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import case_steps, formula_of_factored, given, in_blocks
 from symobs.tasks.analysis.rank.observability import Observability
 from symobs.tasks.analysis.rank.rank_page import rank_cases, square_test
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
+from symobs.tasks.design.block_diagrams import draw_minimal_order
+from symobs.tasks.design.components import combination, summed
+from symobs.tasks.design.error_plots import plot_error
 from symobs.tasks.design.full_order.observer import undetermined
 from symobs.tasks.design.gain.gain_design import OBSERVER
 from symobs.tasks.design.gain.gain_page import define_test_matrix, say_as_required
-from symobs.tasks.design.page_parts import (
-    caution_poles,
-    combination,
-    define_gain,
-    draw_minimal_order,
-    gain_letters,
-    plot_error,
-    say_unassignable,
-    summed,
-)
+from symobs.tasks.design.named_gains import define_gain, gain_letters
+from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.reduced_order.reduced_order_observer import DependentOutputs, ReducedOrderObserver, partition
+from symobs.tasks.design.unassignable import say_unassignable
 from symobs.tasks.result import page_of
 
 if TYPE_CHECKING:

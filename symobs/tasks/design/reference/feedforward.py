@@ -18,7 +18,8 @@ from symobs.system.conditions import joined, nonzero, vanishing_factors
 from symobs.tasks.analysis.page_parts import factored_form, formula_of_factored
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import common_places, places
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
+from symobs.tasks.design.block_diagrams import draw_feedforward, draw_state_feedforward
 from symobs.tasks.design.compensator.compensator import KnownState, observer_based, observer_order, of_known_state
 from symobs.tasks.design.compensator.compensator_page import caution_law
 from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrderCompensator
@@ -29,7 +30,6 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
 )
 from symobs.tasks.design.compensator.of_loop import OfLoop
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, letters_of
-from symobs.tasks.design.page_parts import draw_feedforward, draw_state_feedforward
 from symobs.tasks.result import Result, choose, equality, holds, method, page_of, poles_of, task
 
 if TYPE_CHECKING:

@@ -28,18 +28,15 @@ from symobs.tasks.analysis.page_parts import case_steps, given, say_stability
 from symobs.tasks.analysis.strata.loci import distance_from, loci
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import found_once, outside, region_of, solved
+from symobs.tasks.design.block_diagrams import draw_integral_action
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_where
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
-from symobs.tasks.design.page_parts import (
-    OUTPUT_DERIVATIVE,
-    UNKNOWN_ENTRIES,
-    caution_poles,
-    draw_integral_action,
-    gain_letters,
-    say_unassignable,
-)
+from symobs.tasks.design.named_gains import gain_letters
+from symobs.tasks.design.pole_cautions import caution_poles
+from symobs.tasks.design.readability import OUTPUT_DERIVATIVE, UNKNOWN_ENTRIES
+from symobs.tasks.design.unassignable import say_unassignable
 from symobs.tasks.result import Case, Result, choose, equality, holds, method, page_of, poles_of, task
 
 if TYPE_CHECKING:

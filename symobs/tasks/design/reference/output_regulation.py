@@ -45,7 +45,7 @@ from symobs.tasks.design.disturbance.disturbance_observer import (
 from symobs.tasks.design.gain.gain_cases import places_beside
 from symobs.tasks.design.gain.gain_design import FEEDBACK, page_style
 from symobs.tasks.design.gain.gain_page import write_gain
-from symobs.tasks.design.page_parts import caution_poles
+from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.result import Case, Result, choose, holds, method, page_of, poles_of, task
 from symobs.tasks.result.control_systems import Controller
 

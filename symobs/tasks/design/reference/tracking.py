@@ -16,6 +16,7 @@ from symobs.ground.errors import CertificateRejected, InputError
 from symobs.system.specification import read_gain
 from symobs.tasks.analysis.page_parts import formula_of_factored, in_blocks
 from symobs.tasks.analysis.strata.strata import common_places, places
+from symobs.tasks.design.block_diagrams import draw_tracking
 from symobs.tasks.design.compensator.compensator import observer_based, observer_order
 from symobs.tasks.design.compensator.compensator_page import caution_law
 from symobs.tasks.design.compensator.minimal_order_compensator_page import (
@@ -24,7 +25,6 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
     write_both_gains,
 )
 from symobs.tasks.design.compensator.of_loop import OfLoop
-from symobs.tasks.design.page_parts import draw_tracking
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.tasks.result import Result, choose, holds, method, page_of, poles_of, task
 
