@@ -125,6 +125,7 @@ def result_object(result: Result, convention: Convention = STANDARD) -> dict[str
         "symbols": result.symbols,
         "plant": _plant_object(result.plant),
         "specification": {name: _given(value) for name, value in result.specification.items()},
+        **({"scope": result.scope} if result.scope else {}),
         **answers,
         "decimals": result.decimals,
         "in_convention": {"name": convention.name, **in_convention},

@@ -154,10 +154,12 @@ def given(
     where: Iterable[Condition] = (),
     disturbed: Matrix | None = None,
     by: str = "d",
+    is_question: bool = False,
 ) -> None:
     """State the plant, and the desired poles or polynomials by name (`control`, `observer`, …).
 
     `where` says further of which parameters the page speaks; `disturbed` is the E of ẋ = A x + B u + E d, `by` the letter of d.
+    What an answer about a linearisation says of the plant itself is said with the answer, not with an `is_question`.
     """
     plant, m = page.plant, page.plant.matrices
     with page.section("given"):
@@ -194,6 +196,9 @@ def given(
             page.remark("data_rounded", digits=str(DATA_DIGITS))
         _say_decimals(page)
         state_signs(page)
+        if plant.nonlinear is not None and not is_question:
+            page.remark("linearisation_proves")
+            page.remark("linearisation_leaves_open")
         _state_stratum(page, where)
         for name, desired_polynomial in desired:
             if desired_polynomial is not None:

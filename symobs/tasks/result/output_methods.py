@@ -13,6 +13,7 @@ from symobs.exact.core.generators import PI, symbols_named
 from symobs.exact.floating.sampled import nearest_double
 from symobs.formula.convention import convention_named
 from symobs.formula.expression.source import shown
+from symobs.formula.phrases import PHRASES
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import UsageError
 from symobs.system.conditions import Condition, SumOfSquares
@@ -183,6 +184,14 @@ class OutputMethods:
     def numbers(self) -> Mapping[str, Any]:
         """The fields as programs use them: certain digits, as rational numbers, stand for what has no closed form."""
         return self.fields
+
+    @property
+    def scope(self) -> dict[str, str]:
+        """What an answer about a linearisation proves of the nonlinear plant, and what it does not; nothing for others."""
+        if self.plant.nonlinear is None:
+            return {}
+        proves, leaves_open = ("linearisation_proves", "linearisation_leaves_open")
+        return {"of": "linearisation", "proves": PHRASES[proves], "does_not_prove": PHRASES[leaves_open]}
 
     def decimals_to(self, digits: int) -> dict[str, Any]:  # noqa: ARG002 - for results that can find more of them
         """Return the decimals with so many digits where more can be found."""

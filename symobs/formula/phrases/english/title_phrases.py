@@ -31,6 +31,8 @@ PHRASES: dict[str, str] = {
     "equilibrium_continuous": "The states are at rest at the equilibrium:",
     "equilibrium_discrete": "The states keep their values at the equilibrium:",
     "linearised": "For small deviations $x$, $u$ and $y$ from the equilibrium, the linearised plant has the matrices",
+    "linearisation_proves": "What is true of the linearised plant is true of the plant itself near the equilibrium: if the one is observable or controllable, the other is so locally, and a feedback or an observer that is asymptotically stable for the one is so for the other where deviations are small.",
+    "linearisation_leaves_open": "What is not true of the linearised plant proves nothing of the plant itself, which may be observable or controllable all the same.",
     "realised": "A realisation in controllable canonical form is",
     "data_rounded": "Irrational data are rounded to {digits} significant digits; what follows holds for these numbers.",
     "from_floats": "Floating-point entries are taken as the shortest decimals that represent them.",

@@ -221,6 +221,7 @@ def _rank_test(page: Builder, result: TimeVaryingObservability) -> None:
     by_functions = has_functions(answer["matrix"])
     if answer["rank"] < order:
         _hidden(page, result)
+        page.steps += [_case(page, case) for case in result.case_tree]
         return
     conditions = [c.expression for c in result.holds_where if c.kind == "existence"]
     determinant = page.plant.simplified(answer["matrix"].determinant()) if page.plant.outputs == 1 else None

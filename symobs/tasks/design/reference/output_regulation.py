@@ -7,6 +7,8 @@ eigenvalues λ of S.  Where they have none there are U and V with U A + V C = S 
 
 from __future__ import annotations
 
+import itertools
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
@@ -20,6 +22,7 @@ from symobs.exact import (
     modulo,
     product_of,
     rank,
+    resultant,
     roots_of,
     solve_or_refute,
 )
@@ -241,7 +244,18 @@ class OutputRegulation(Result):
             )
             return found
 
-        return solved(self.plant, {frozenset(place.when): place for place in self._places}.values(), on)
+        places_asked = {frozenset(place.when): place for place in self._places}
+        beside = {frozenset(place.when): place for place in _drops(self.plant, self.exogenous.S)}
+        also = [place for when, place in beside.items() if when not in places_asked]
+        more = (case for case in solved(self.plant, also, on) if not self._is_blocked_alike(case))
+        return (*solved(self.plant, places_asked.values(), on), *more)
+
+    def _is_blocked_alike(self, case: Case) -> bool:
+        """Return whether the same eigenvalues are zeros of the plant in a case, as far as that is known."""
+        if case.result is None:
+            return True
+        own, there = (result.answer["blocked"] for result in (self, case.result))
+        return own is not None and there is not None and [f for f, _ in own] == [f for f, _ in there]
 
     @property
     def _places(self) -> tuple[Place, ...]:
@@ -405,6 +419,29 @@ def _blocked(plant: StateSpace, S: Matrix) -> tuple[tuple[Scalar, Matrix], ...] 
     except TooLarge:
         return None
     return tuple(found)
+
+
+#: Of more minors that decide whether an eigenvalue is a zero none is looked at.
+_MINORS = 12
+
+
+def _drops(plant: StateSpace, S: Matrix) -> Iterator[Place]:
+    """Yield strata on which an eigenvalue of S may be a zero of the plant that is none in general, where these are few."""
+    chi, variable = plant.simplified(S.characteristic_polynomial(plant.variable)), plant.variable
+    for found, _ in chi.numerator.factors()[1]:
+        if not found.degree(variable):
+            continue
+        matrix, relations = _pencil(plant, found / found.coefficients(variable)[0])
+        rows, columns = matrix.shape
+        if plant.equations or rows > columns or math.comb(columns, rows) > _MINORS or not matrix.names:
+            continue
+        chosen = itertools.combinations(range(columns), rows)
+        minors = [matrix.select(range(rows), each).determinant().numerator for each in chosen]
+        if relations:  # at all roots of the factor together
+            minors = [resultant(minor, relations[0].numerator, EIGENVALUE) for minor in minors if not minor.is_zero]
+        minors = [minor for minor in minors if not minor.is_zero]
+        if minors and not any(minor.is_constant for minor in minors):
+            yield from places(plant, minors) if len(minors) == 1 else common_places(plant, minors)
 
 
 def _blocking_claims(
