@@ -157,7 +157,7 @@ KINDS = {
     "sheet-entry": "symobs.cli.shared.sheet_entries",
     "solve": "symobs.applications.batch.solving",
     "variant": "symobs.applications.variants.acceptance",
-    "sweep-block": "symobs.applications.batch.sweep.table",
+    "sweep-block": "symobs.applications.batch.sweep.points",
 }
 
 

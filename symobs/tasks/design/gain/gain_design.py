@@ -488,6 +488,15 @@ class PlacementProblem:
         """The letter of the desired polynomial."""
         return f"phi_{self.index}"
 
+    @property
+    def is_dual(self) -> bool:
+        """Whether a gain is found for (Aᵀ, Cᵀ) and transposed."""
+        return self.gain == "L"
+
+    def pair(self, page: Builder) -> tuple[Term, Term]:
+        """Return (Aᵀ, Cᵀ) or (A, B), for which a row is found."""
+        return (page["A.T"], page["C.T"]) if self.is_dual else (page["A"], page["B"])
+
     def closed_loop_matrix(self, page: Builder) -> Term:
         """Return A − LC or A − BK."""
         return page["A"] - self._gain_term(page)
@@ -497,7 +506,7 @@ class PlacementProblem:
         return page("det(pencil(A) + {gain_term})", gain_term=self._gain_term(page))
 
     def _gain_term(self, page: Builder) -> Term:
-        return page["L C"] if self.gain == "L" else page["B K"]
+        return page["L C"] if self.is_dual else page["B K"]
 
 
 OBSERVER = PlacementProblem("observer", "L", "O", "observability", "o", "beta_")
