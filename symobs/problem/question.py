@@ -61,6 +61,7 @@ _WEIGHTS = {
     ("lqr", "R"): ("R_u", "inputs"),
     ("lqr", "N"): ("N_x", ""),
     ("kalman", "G"): ("G_n", ""),
+    ("kalman", "N"): ("N_n", ""),
     ("kalman", "W"): ("W_n", "order"),
     ("kalman", "V"): ("V_n", "outputs"),
     ("lyapunov", "Q"): ("Q_l", "order"),
