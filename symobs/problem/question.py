@@ -221,6 +221,12 @@ def _slot(page: Builder, task: Task, name: str, value: Any) -> Slot:
 def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
     """Yield what the specification contains for a task, read."""
     keys = keys_of(task, problem.specification)
+    if (
+        task.name in {"pbh", "gramian"}
+        and "of" not in keys
+        and problem.plant.pair_asked_for("auto") == "controllability"
+    ):
+        yield "of", "controllability"
     for name, kind in task.keywords.items():
         if name in keys and is_pattern(problem.specification[keys[name]]):
             yield name.replace("poles", "polynomial"), _read_pattern(problem, task, name, keys[name])
