@@ -48,7 +48,7 @@ from symobs.tasks.analysis.time_response.initial_state import InitialState as _I
 from symobs.tasks.analysis.time_response.initial_state_covariance import InitialStateCovariance as _InitialStateCovariance
 from symobs.tasks.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
 from symobs.tasks.analysis.time_response.minimum_energy_input import MinimumEnergyInput as _MinimumEnergyInput
-from symobs.tasks.analysis.time_response.response import Response as _Response
+from symobs.tasks.analysis.time_response.response_in_time import Response as _Response
 from symobs.tasks.analysis.time_response.zero_order_hold import ZeroOrderHold as _ZeroOrderHold
 from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
@@ -139,6 +139,8 @@ class _CompensatorResult(_OutputFeedback):
     def F_stable(self) -> str: ...
     @property
     def F_stable_if(self) -> tuple[str, ...]: ...
+    @property
+    def F_cancels_where(self) -> tuple[Any, ...]: ...
     @property
     def compensator_stable(self) -> str: ...
     @property

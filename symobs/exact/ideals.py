@@ -304,24 +304,14 @@ def _scalar(value: fmpq_poly, x: str) -> Scalar:
 
 #: The most polynomials of a basis, terms of one of them, and bits of a coefficient, before the work is given up.
 LIMITS = (120, 600, 4_000)
-
-
 #: The most terms that the generators may have together.
 TERMS = 1_000
-
-
 #: The most monomials among which a basis of the functions on finitely many points is looked for.
 _MONOMIALS = 150
-
-
 #: Beyond so many conjugate points they are kept by the polynomial of one coordinate: a graded basis of them is longer still.
 FEW = 6
-
-
 #: What the names of the coordinates of a vector begin with; no parameter's name begins so.
 _UNIT = "_e"
-
-
 #: What the name of the inverse of a polynomial begins with.
 _INVERSE = "1/"
 

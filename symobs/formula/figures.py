@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 #: A point of a picture.  Coordinates are rational: what is drawn can be held against what is exact.
 Place: TypeAlias = "tuple[Fraction, Fraction]"
-
-
 Interval: TypeAlias = "tuple[Fraction, Fraction]"
 
 
@@ -138,8 +136,6 @@ class TimeResponse:
 
 #: What stands on a page, and is checked with it.
 Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse
-
-
 #: A line through values that were rounded to binary numbers; values of a sweep are exact, what joins them is not.
 Run: TypeAlias = "tuple[tuple[float, float], ...]"
 
@@ -190,8 +186,6 @@ Drawn: TypeAlias = Picture | SweepCurves | SweepMap
 
 #: A gain or a signal; in the box of a whole system its equations.
 Label: TypeAlias = Formula | Conjunction
-
-
 Labels: TypeAlias = "Mapping[str, Label]"
 
 

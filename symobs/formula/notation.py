@@ -285,16 +285,10 @@ LETTERS: dict[str, LetterForm] = {
 
 
 _STATES = {"x", "x_1", "x_2", "x_d", "x_hat", "x_hat_1", "x_hat_2", "x_2_hat", "z_o", "w_o", "xi_I", "w_e", "w_hat"}
-
-
 #: Signals; in discrete time they carry the index k.
 SIGNALS = frozenset({*_STATES, "u", "y", "y_hat", "d", "d_hat", "v_r", "e", "e_2", "e_d", "e_w", "r_w", "x_w"})
-
-
 #: Letters that are functions of several times, and those times; an underscore after the name leaves them out.
 TIMED: dict[str, tuple[str, ...]] = {"Phi": ("t", "t0"), "u_t": ("t",), "y_t": ("t",)}
-
-
 _OF_TIME = {*TIMED, "A", "B", "C", "D", "V", "W", "x_u", "x_t", "C_1", "exp_At", "Y", "x_f", "y_0", "W_t", "V_t"}
 
 
@@ -385,14 +379,8 @@ GREEK = [
 
 
 GREEK_LETTERS = dict(zip(GREEK, "αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True)) | {"lam": "λ"}
-
-
 GREEK_LATEX = {name: rf"\{name}" for name in GREEK if name != "omicron"} | {"lam": r"\lambda", "omicron": "o"}
-
-
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
-
-
 _NAME = re.compile(r"^([A-Za-z]+?)_?(\d*)((?:_[A-Za-z0-9]+)*)$")
 
 

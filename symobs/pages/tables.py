@@ -39,12 +39,8 @@ if TYPE_CHECKING:
 
 #: Letters for the rows below the coefficients; e, i, j, o, s, t, w, x, y, z mean other things too often.
 _ROWS = "bcdfghklmnpqruv"
-
-
 #: Each time the table does not fit, entries wider than a bound smaller by this factor get names.
 _NARROWER = 1.4
-
-
 _NARROWEST = 1.0
 
 
@@ -172,17 +168,9 @@ def _made(value: Scalar, table: RouthTable, names: Names) -> Formula:
 
 #: In em: a letter of running text; what the powers, the rule and the space around the table take; a `\quad` and more.
 _LETTER = 0.47
-
-
 _HEADS = 3.3
-
-
 _BEFORE_REMARK = 1.5
-
-
 _OPEN = r"\renewcommand{\arraystretch}{1.15}"
-
-
 _TIGHT = r"\scriptsize\arraycolsep=1.5pt"
 
 
@@ -225,8 +213,6 @@ def _em_width(inlines: Inlines, printer: LatexPrinter | MathmlPrinter) -> float:
 # -- terminals -----------------------------------------------------------------------------------------------------------
 
 _GAP = 2
-
-
 _RULE = " │ "
 
 

@@ -306,14 +306,8 @@ def _implies(
 
 
 _NOT_RATIONAL = re.compile(r"sqrt|CRootOf|oo")
-
-
 _FUNCTION = re.compile(r"\b(exp|sin|cos|sinh|cosh)\b|\bt\b")
-
-
 _WORD = re.compile(r"[A-Za-z]+")
-
-
 _MOST_SHOWN = 200
 
 

@@ -235,8 +235,6 @@ def _slip(name: str, where: str, errors: Errors) -> None:
 
 
 _PARTS = list_of(Field({"type": "string", "pattern": f"^{_PART.pattern}$"}, _part))
-
-
 _MILESTONE = {"relation": TEXT, "points": number()}
 
 

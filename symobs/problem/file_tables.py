@@ -183,8 +183,6 @@ def _counted(value: object, where: str) -> Scalar | None:
 
 
 _MAX_TEXT = 2000
-
-
 _MAX_UNKNOWN = 20
 
 

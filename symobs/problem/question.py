@@ -18,6 +18,7 @@ from symobs.formula.phrases.english.question_phrases import UNSAID
 from symobs.formula.tree import Roots, SymbolList
 from symobs.ground.dataclass import dataclass
 from symobs.problem.schema import keys_of
+from symobs.problem.validation import gains_from
 from symobs.proof.derivation import Note, Section, translated
 from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.system import read_matrix, read_scalar
@@ -54,6 +55,16 @@ if TYPE_CHECKING:
 #: Keywords whose matrices stand among the data, and the letters they have there.
 _DATA = {"K": "K", "L": "L", "T": "T", "reference_matrix": "A_ref", "reference_start": "x_d0"}
 _DATA |= {"E": "E_d", "S": "S_w", "V": "V_w", "reference": "Q_r"}  # of exosystems
+#: The letters of weights and intensities, by task and keyword, and how many rows a number stands for as a multiple of I.
+_WEIGHTS = {
+    ("lqr", "Q"): ("Q_x", "order"),
+    ("lqr", "R"): ("R_u", "inputs"),
+    ("lqr", "N"): ("N_x", ""),
+    ("kalman", "G"): ("G_n", ""),
+    ("kalman", "W"): ("W_n", "order"),
+    ("kalman", "V"): ("V_n", "outputs"),
+    ("lyapunov", "Q"): ("Q_l", "order"),
+}
 #: Kinds of keyword whose value is a word: the word chooses the sentence.
 _WORDS = {"Name", "Sign"}
 
@@ -96,6 +107,9 @@ def question_of(problem: Problem) -> Question:
                 page.steps.append(Note(_filled(page, task, key, values)))
             if task.name in _MAY_DEPEND and problem.plant.field.names:
                 page.remark("exceptions_asked")
+            earlier = [each.name for each, _ in asked[:place]]
+            for letter, origin in gains_from(task, values, earlier).items():
+                page.remark(f"uses_{letter}", part=_letter_of(origin))
             if task.name == problem.plant_of:
                 page.remark("plant_found", letter=_letter_of(place))
     typed = problem.plant.is_in_decimals or has_decimals([*problem.specification.values()])
@@ -131,7 +145,12 @@ def _state_data(page: Builder, asked: Iterable[tuple[Task, Mapping[str, Any]]]) 
         with page.section("given"):
             page.given(relation(page["chi_p"], polynomial))
             state_signs(page)
-    data = {_DATA[name]: value for _, values in asked for name, value in values.items() if name in _DATA}
+    data: dict[str, Any] = {}
+    for task, values in asked:
+        for name, value in values.items():
+            letter, size = _WEIGHTS.get((task.name, name), (_DATA.get(name, ""), ""))
+            if letter:
+                data[letter] = _as_matrix(value, size, values.get("G"), page.plant)
     stated = page.steps[0]
     if not data or not isinstance(stated, Section):
         return
@@ -142,6 +161,14 @@ def _state_data(page: Builder, asked: Iterable[tuple[Task, Mapping[str, Any]]]) 
                 page.given(relation(page["x_d"].derivative, page.value(value) @ page["x_d"]))
             else:
                 page.given(relation(page[letter], value))
+
+
+def _as_matrix(value: Any, size: str, entering: object, plant: StateSpace) -> Any:
+    """Return a number that stands for a multiple of I as that matrix."""
+    if not size or not isinstance(value, Scalar):
+        return value
+    rows = entering.shape[1] if size == "order" and isinstance(entering, Matrix) else getattr(plant, size)
+    return Matrix.identity(rows) * value
 
 
 # -- what is asked ----------------------------------------------------------------------------------------------------
@@ -220,7 +247,8 @@ def _slot(page: Builder, task: Task, name: str, value: Any) -> Slot:
 
 def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
     """Yield what the specification contains for a task, read."""
-    keys = keys_of(task, problem.specification)
+    specification = problem.specification_of(task)
+    keys = keys_of(task, specification)
     if (
         task.name in {"pbh", "gramian"}
         and "of" not in keys
@@ -228,13 +256,13 @@ def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
     ):
         yield "of", "controllability"
     for name, kind in task.keywords.items():
-        if name in keys and is_pattern(problem.specification[keys[name]]):
+        if name in keys and is_pattern(specification[keys[name]]):
             yield name.replace("poles", "polynomial"), _read_pattern(problem, task, name, keys[name])
         elif name in keys:
-            yield name, _read(problem.specification[keys[name]], kind, name, problem.plant, task.name)
+            yield name, _read(specification[keys[name]], kind, name, problem.plant, task.name)
         elif kind == "Horizon":
             yield name, read_horizon(problem.plant, None)
-    if task.name == "stability_region" and "parameters" not in problem.specification:
+    if task.name == "stability_region" and "parameters" not in specification:
         parameters = _free_parameters(problem)
         if parameters:
             yield "parameters", parameters
@@ -242,7 +270,7 @@ def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
 
 def _read_pattern(problem: Problem, task: Task, name: str, key: str) -> Scalar:
     """Return the polynomial of poles that are given by what they are to do."""
-    plant, asked = problem.plant, problem.specification
+    plant, asked = problem.plant, problem.specification_of(task)
     degree = task.degree(name, plant, asked)
     found = desired_polynomial(plant, asked[key], None, names=(key, key), degree=degree)
     assert found is not None  # noqa: S101 - they are given
@@ -253,7 +281,7 @@ def _free_parameters(problem: Problem) -> tuple[str, ...]:
     """Return the parameters of the region where none are named."""
     from symobs.tasks.analysis.stability_region.stability_region import read_question  # noqa: PLC0415 - only questions of regions
 
-    asked = problem.specification
+    asked = problem.specification_of(next(task for task in problem.tasks if task.name == "stability_region"))
     gains = {"K": asked.get("K"), "L": asked.get("L")}
     return read_question(problem.plant, gains, None, asked.get("margin"), asked.get("radius")).parameters
 

@@ -78,14 +78,8 @@ _PRINTED = {
 
 
 PRINTED = list_of(table(_PRINTED), 200)
-
-
 NONLINEAR = ("f", "h", "states", "inputs", "equilibrium")
-
-
 PLANT = ("A", "B", "C", "D", "transfer_function", "realisation", *NONLINEAR, "dt")
-
-
 #: A compensator has poles for each of its halves; a task that is one half reads them where nothing else is said of it.
 _HALVES: dict[tuple[str, ...], str] = {("K",): "control", ("L",): "observer"}
 

@@ -68,6 +68,7 @@ class Problem:
     digits: int | None = None  # of the numbers on the page, as a document has them
     language: str = ENGLISH.code
     plant_of: str = ""  # the task whose answer is the plant of those after it
+    own: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)  # by task, what is specified for it alone
 
     def follows(self, name: str) -> bool:
         """Return whether a task is one of the plant that another task finds."""
@@ -88,10 +89,16 @@ class Problem:
         for task in (*first, *self.tasks):
             if report is not None:
                 report(task.name, tuple(results))
-            own, keys = Errors(), keys_of(task, self._specification_of(task))
+            specification = self.specification_of(task)
+            own, keys = Errors(), keys_of(task, specification)
+            asked = {name: specification[keys[name]] for name in keys}
+            places_of_gains = gains_from(task, asked, [result.task for result in results])
+            gains = {letter: results[place].numbers[letter] for letter, place in places_of_gains.items()}
+            is_exact = all(results[place].fields[letter] is not None for letter, place in places_of_gains.items())
             with own:
                 try:
-                    found = task.function(plant, **{name: self.specification[keys[name]] for name in keys})
+                    there = plant if is_exact or None in gains.values() else plant.with_rounding()
+                    found = task.function(there, **asked, **{letter: K for letter, K in gains.items() if K is not None})
                     if task.name == self.plant_of:
                         plant = found
                     if task not in first:
@@ -103,7 +110,10 @@ class Problem:
             if own.found and task.name == self.plant_of:
                 errors.found += own.found
                 break
-            own.move({f"specification.{name}": f"specification.{key}" for name, key in keys.items()})
+            places = {
+                name: f"{task.name}.{key}" if key in self.own.get(task.name, ()) else key for name, key in keys.items()
+            }
+            own.move({f"specification.{name}": f"specification.{place}" for name, place in places.items()})
             errors.found += own.found
         if errors.found:
             known = self.plant.symbols, self.plant.variable
@@ -114,15 +124,15 @@ class Problem:
             raise undecided[0]
         return tuple(results)
 
-    def _specification_of(self, task: Task) -> Mapping[str, Any]:
-        """Return the specification of a task: of several tasks, a method is for those that have it."""
-        name = self.specification.get("method")
-        if name in {None, "auto"}:  # the methods of all tasks are looked at only where one is named
-            return self.specification
-        having = [each for each in self.tasks if f"{each.name}/{name}" in methods(each.name)]
-        if task in having or not having:
-            return self.specification
-        return {key: value for key, value in self.specification.items() if key != "method"}
+    def specification_of(self, task: Task) -> Mapping[str, Any]:
+        """Return the specification of a task, its own before that of all; a method is for those tasks that have it."""
+        shared, own = self.specification, self.own.get(task.name, {})
+        name = shared.get("method")
+        if name not in {None, "auto"}:  # the methods of all tasks are looked at only where one is named
+            having = [each for each in self.tasks if f"{each.name}/{name}" in methods(each.name)]
+            if task not in having and having:
+                shared = {key: value for key, value in shared.items() if key != "method"}
+        return {**shared, **own} if own else shared
 
     def viewed(self, results: tuple[Result, ...]) -> tuple[ResultInConvention, ...]:
         """Return the results in the file's convention."""
@@ -155,7 +165,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     plant = plant_of(
         data, symbols, dt, errors, optional=bool(wanted) and all(task.works_without_plant for task in wanted)
     )
-    specification = _specification(data, (*asked, *wanted), convention, symbols, errors)
+    specification, own = _specification(data, (*asked, *wanted), convention, symbols, errors)
     if language_named(language).has_comma:
         _require_clear_commas(specification, _kinds((*asked, *wanted)), errors)
     expect = table_of(data, "expect", errors)
@@ -166,11 +176,11 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     check_text(data.get("variant", ""), "variant", errors)
     if not errors.found and plant is not None:
         about = title, source, ids, wanted, plant, specification, expect, convention, text, printed, values, marking
-        return Problem(*about, digits, language, plant_task)
+        return Problem(*about, digits, language, plant_task, own)
     if plant is not None and wanted and not any(error.where.startswith("constants") for error in errors.found):
         with errors:
             tried = Problem(title, source, ids, wanted, plant, specification, expect, convention)
-            replace(tried, values=values, plant_of=plant_task).solve()
+            replace(tried, values=values, plant_of=plant_task, own=own).solve()
             errors.found += unreadable(expect, symbols.names, plant.variable)
     else:
         _read_alone(specification, _kinds(wanted), expect, symbols, read_time(dt, symbols).variable, errors)
@@ -210,6 +220,25 @@ def _meant_to_be_declared(data: Mapping[str, Any]) -> tuple[set[str], list[str]]
             refused.append(name)
         texts += [str(entry)] if isinstance(entry, list) else []
     return {*NAME.findall(" ".join([*texts, *refused]))}, refused
+
+
+#: Keywords that say which gain a task has, by its letter.
+_SAYS = {
+    "K": {"K", "control_poles", "control_polynomial", "poles", "polynomial", "controller"},
+    "L": {"L", "observer_poles", "observer_polynomial", "poles", "polynomial", "controller"},
+}
+#: The tasks whose gain is that of the tasks after them.
+_FINDS = {"state_feedback": "K", "lqr": "K", "observer": "L", "kalman": "L"}
+
+
+def gains_from(task: Task, asked: Collection[str], earlier: Sequence[str]) -> dict[str, int]:
+    """Return the gains that a task of a file needs and is not given, each with the place of the earlier task that finds it."""
+    found: dict[str, int] = {}
+    for place, name in enumerate(earlier if task.name not in _FINDS else ()):
+        letter = _FINDS.get(name, "")
+        if letter in task.keywords and not _SAYS[letter] & set(asked):
+            found[letter] = place
+    return found
 
 
 def _refuse_other_kinds(data: Mapping[str, Any]) -> None:
@@ -342,28 +371,47 @@ def _specification(
     convention: Convention,
     symbols: Symbols,
     errors: Errors,
+) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+    """Return the part of the specification that the tasks use, and by name of a task what is for it alone."""
+    table = table_of(data, "specification", errors)
+    by_name = {task.name: task for task in wanted if isinstance(table.get(task.name), Mapping)}
+    own = {
+        name: _read_specification(table[name], f"specification.{name}", (task,), convention, symbols, errors)
+        for name, task in by_name.items()
+    }
+    shared = {name: value for name, value in table.items() if name not in own}
+    return _read_specification(shared, "specification", wanted, convention, symbols, errors), own
+
+
+def _read_specification(
+    table: Mapping[str, Any],
+    place: str,
+    wanted: Collection[Task],
+    convention: Convention,
+    symbols: Symbols,
+    errors: Errors,
 ) -> dict[str, Any]:
-    """Return the part of the specification that the tasks use, in standard letters and signs."""
-    table, kinds = table_of(data, "specification", errors), _kinds(wanted)
+    """Return the part of a table that the tasks use, in standard letters and signs."""
+    kinds = _kinds(wanted)
     named = {own: pair for own, pair in names_in(convention).items() if pair[0] in kinds}
-    report_unknown(table, {**kinds, **dict.fromkeys(named, "GainText")}, "specification", errors, repair_of)
+    report_unknown(table, {**kinds, **dict.fromkeys(named, "GainText")}, place, errors, repair_of)
     gains: dict[str, Any] = {}
     for own, (name, sign) in named.items():
         if own in table:
             gains[name] = table[own]
             with errors:
-                where = f"specification.{own}"
+                where = f"{place}.{own}"
                 known = symbols.naming(table.get("parameters"), "specification.parameters")
                 gains[name] = table[own] if sign > 0 else -read_matrix(table[own], known, where)
             if own != name and name in table and name not in named:
                 message = f"{name} and {own} are the same gain in the convention {convention.name}"
-                errors.note(message, f"specification.{name}", "keep one of them")
+                errors.note(message, f"{place}.{name}", "keep one of them")
     table = {**{name: value for name, value in table.items() if name not in named}, **gains}
     found: dict[str, Any] = {}
     for name in [name for name in table if name in kinds]:
         if kinds[name] == "Name" and (not isinstance(table[name], str) or isinstance(table[name], Decimal)):
             message = f"a name is expected, but {came(table[name])} came"
-            errors.note(message, f"specification.{name}", "write it in quotes")
+            errors.note(message, f"{place}.{name}", "write it in quotes")
         else:
             found[name] = table[name]
     return found

@@ -31,40 +31,22 @@ if TYPE_CHECKING:
 
 #: Nodes in every cylinder; they crowd towards the critical lines, where branches turn.
 NODES = 48
-
-
 #: This part of the way from a critical line to the middle of a cylinder is close to the critical line.
 _CLOSE = 64
-
-
 #: The corners of a box are sought at this part, extremes of branches between so many points, halved so many times.
 _CLOSEST, _ACROSS, _SEARCHED = 1 << 16, 12, 6
-
-
 #: Beyond this many samples only the stable ones are marked.
 MOST_MARKS = 16
-
-
 #: Nodes lie on this grid of the window: numbers of many digits cost time over every one of them.
 _NODE_GRID = 1 << 14
-
-
 #: How often nodes are added where a branch is farther off a straight line than this part of the window.
 _PASSES, _STRAIGHT = 2, Fraction(1, 100)
-
-
 #: Coordinates are rounded to this fraction of the window.
 _GRID = 1 << 20
-
-
 #: What lies farther out than this many times the usual distance does not widen the window.
 _FAR = 8
-
-
 #: A dividing curve ends where the region is nearer than this part of the window: there it could not be told from a boundary.
 _THICK = Fraction(1, 10_000)
-
-
 #: Where along a dividing curve this is asked for: at so many points, on a segment at these parts of it.
 _ASKED, _ON_SEGMENT = 8, (Fraction(0), Fraction(2, 7), Fraction(5, 9), Fraction(3, 4), Fraction(1))
 
@@ -535,11 +517,7 @@ def _general(
 
 #: Nodes along the way, and how near to a double root, in parts of the way, further ones stand on both sides of it.
 LOCUS_NODES = 120
-
-
 _BESIDE = (Fraction(1, 3000), Fraction(1, 600), Fraction(1, 200))
-
-
 #: A root is known to about 50 bits of its modulus: in a window so much longer than wide its place cannot be drawn.
 _LONGEST = 1 << 40
 

@@ -132,7 +132,7 @@ _RANKS = {"controllability", "observability"}
 _STANDS_ON = {
     "detectable": _RANKS | {"detectability", "stabilizability"},
     "lyapunov": {"lyapunov"},
-    "servo_observer": _RANKS | {"observer", "response", "initial_state", "matrix_exponential"},
+    "servo_observer": _RANKS | {"observer"},
     "zero_order_hold": {"zero_order_hold", "matrix_exponential"},
 }
 

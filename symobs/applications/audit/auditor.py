@@ -74,11 +74,7 @@ if TYPE_CHECKING:
 
 
 _MOST_LETS = 20
-
-
 _WHERE = " where"
-
-
 _FUNCTIONS = {name for name, _ in FUNCTIONS}
 
 
@@ -203,8 +199,6 @@ def is_evident(left: SyntaxNode, exact: Matrix, printed: Matrix, wrong: int) -> 
 
 
 _MOST_LETTERS = 3
-
-
 #: The signs of so many squared factors under roots are tried both ways.
 _MOST_SQUARES = 3
 

@@ -38,14 +38,8 @@ if TYPE_CHECKING:
 
 
 _CONDITION = re.compile(r"(.+?)(!=|>=|<=|>|<)(.+)")
-
-
 _STRICT = {"positive", "negative", "nonzero"}
-
-
 _STRICT_OF = {"nonnegative": "positive", "nonpositive": "negative", "real": "nonzero"}
-
-
 NOT_NEGATIVE, NOT_POSITIVE = {"positive", "nonnegative", "zero"}, {"negative", "nonpositive"}
 
 
@@ -253,17 +247,9 @@ FUNCTIONS = (
 
 
 _ARGUMENTS = dict(FUNCTIONS)
-
-
 MOST_CHARACTERS = 2_000
-
-
 MOST_NODES = 200
-
-
 MOST_EXPONENT = 12
-
-
 #: `x(t)` and `P(s)` are x and P whatever they are.
 _OF_ITS_VARIABLE = re.compile(rf"\([ ]*({'|'.join(VARIABLES)})[ ]*\)")
 
@@ -400,16 +386,10 @@ SIZES = {
 
 #: Where C stands for the invertible block C₁ of y = C₁ x₁.
 MEASURED = {"minusK-minusLC-estimate-x0"}
-
-
 #: The generators of time: the instants of a transition matrix and of an integral.
 INSTANTS = ("t", "t0", "t1", "sigma", "tau")
-
-
 #: What the transition matrix is kept in.
 BEGIN, END = "begin_", "end_"
-
-
 #: Values that no source has a letter for.
 HIDDEN = frozenset({"Phi_", "F_z", "G_u", "G_y"})
 

@@ -55,21 +55,11 @@ if TYPE_CHECKING:
 
 
 MOST_TERMS = 5_000
-
-
 MOST_BITS = 10_000
-
-
 MOST_DEGREE = 1_000
-
-
 MOST_ORDER = 20
-
-
 #: A matrix of more rows has an inverse here only if it has no more symbols than this.
 MOST_GENERIC = 6
-
-
 #: So many minors of a matrix are looked at for where its rank is less.
 MOST_MINORS = 60
 
@@ -249,8 +239,6 @@ class _Certified(Exact):
 
 
 KERNEL = _Certified(Environment())
-
-
 #: The sizes of a number.
 SINGLE = ((1, 1), None)
 

@@ -37,26 +37,14 @@ if TYPE_CHECKING:
 
 
 CHILD = "symobs.applications.batch.child"
-
-
 #: How often a job may end its process.
 _ATTEMPTS = 2
-
-
 #: The children of a worker whose run is elsewhere; they end with its process.
 _own = Kept(CHILD)
-
-
 #: Seconds that a connection takes at most, and after which one that was lost is given up.
 _CONNECT = 10.0
-
-
 _LOST_AFTER = 10.0
-
-
 _ASK = 5.0
-
-
 _CLOSE = 1.0
 
 
@@ -267,18 +255,10 @@ def _require_same_versions(client: Any) -> None:
 
 #: Chunks in flight for each worker: enough that none waits, few enough that memory does not grow with the jobs.
 IN_FLIGHT = 4
-
-
 LARGEST_CHUNK = 10_000
-
-
 _LOOK_EVERY = 1.0
-
-
 #: The first rows of a run are all checked again by other code: of a run that has few, every one.
 ALL_RECHECKED_BELOW = 200
-
-
 Row = dict[str, Any]
 
 

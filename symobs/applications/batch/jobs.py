@@ -24,19 +24,11 @@ if TYPE_CHECKING:
 
 
 SCHEMA = "symobs-batch/1"
-
-
 #: What of a problem file changes no answer, and what only its page shows.
 _SAYS_NOTHING = {"id", "printed"}
-
-
 #: What one job is allowed where nothing else is said.
 USUAL_BUDGET = Budget(60.0, 2000.0)
-
-
 _ON_A_PAGE = {"title", "source", "text", "digits", "exact"}
-
-
 _JSON_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][-+]?[0-9]+)?")
 
 
@@ -165,7 +157,7 @@ KINDS = {
     "sheet-entry": "symobs.cli.shared.sheet_entries",
     "solve": "symobs.applications.batch.solving",
     "variant": "symobs.applications.variants.acceptance",
-    "sweep-block": "symobs.applications.batch.sweep.table",
+    "sweep-block": "symobs.applications.batch.sweep.points",
 }
 
 

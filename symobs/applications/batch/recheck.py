@@ -15,15 +15,15 @@ import re
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.export.grader.claims import faddeev_leverrier, minus, negative, transfer, transpose
-from symobs.applications.export.grader.claims import product as times
-from symobs.applications.export.grader.values import ONE, UnreadableError, VanishingError, number, poly
-from symobs.applications.export.grader.values import read as read_value
+from symobs.applications.grader.claims import faddeev_leverrier, minus, negative, transfer, transpose
+from symobs.applications.grader.claims import product as times
+from symobs.applications.grader.values import ONE, UnreadableError, VanishingError, number, poly
+from symobs.applications.grader.values import read as read_value
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from symobs.applications.export.grader.values import Ratio
+    from symobs.applications.grader.values import Ratio
 
 Matrix = list[list[Fraction]]
 

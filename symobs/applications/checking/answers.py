@@ -32,18 +32,10 @@ from symobs.problem.expect import factored_table
 
 
 _NAME = r"[ \t]*([A-Za-z\u0391-\u03c9][A-Za-z0-9_.\u2080-\u2089]*)((?:[ \t]*\([szt]\))?)[ \t]*(?::=|==?|≈)(?![=<>])"
-
-
 #: What gives a letter its value, or a function of s, z or t: F(s) = 1/s.
 _DEFINITION = re.compile(rf"{_NAME}(.*)", re.DOTALL)
-
-
 _NEXT = re.compile(rf"(?:[;,]|\band\b)(?={_NAME})")
-
-
 _EQUALS = re.compile(r"(?<![<>!=:])==?(?![=<>])")
-
-
 _IS_INEQUALITY = re.compile(r"[<>]|!=")
 
 
@@ -111,8 +103,6 @@ def _apart(separator: re.Pattern[str], text: str) -> list[str]:
 DECIMAL = re.compile(
     r"(?<![A-Za-z0-9_.])(?:(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?|[0-9]+[eE][+-]?[0-9]{1,3})(?![A-Za-z0-9_.])"
 )
-
-
 #: A decimal comma stands between two digits, with no space around it.
 _COMMA = re.compile(r"(?<![0-9.,])([0-9]+),([0-9]+)(?![0-9.,])")
 
@@ -135,14 +125,8 @@ _CALL = re.compile(
 
 #: A matrix of SymPy by its size and the entries of its rows.
 _OF_SIZE = re.compile(r"(?:[A-Za-z]+\.)?(?:Immutable)?Matrix\(\s*(\d{1,2})\s*,\s*(\d{1,2})\s*,\s*\[([^][;]*)\]\s*\)")
-
-
 _FLAT = re.compile(r"\[([^][;]*)\]")
-
-
 _QUOTED = re.compile(r"""(["'])([^"']*)\1""")
-
-
 _QUOTE, _ORDER = re.compile(r"[\"']"), re.compile(r"[<>]")
 
 
@@ -318,33 +302,17 @@ def read_like(found: Any, value: Any, names: Any, variable: str, where: str) -> 
 
 
 MAX_BYTES, MAX_LINES = 64 * 1024, 200
-
-
 MAX_NAME = 200
-
-
 #: The keys of an answer file.
 KEYS = ("student", "convention", "symbols", "let", "answer", "step")
-
-
 _STEP = ("relation", "where", "let")
-
-
 #: What tells a file of tables from a text of lines.
 _TABLES = re.compile(r"(?m)^[ \t]*(\[\[?[ \t]*(answer|step)\b|(student|convention|symbols|let)[ \t]*=[ \t]*[\"'\[{])")
-
-
 #: What begins a remark.
 _REMARK = re.compile(r"[#%]")
-
-
 _RELATION = re.compile(r"[=<>]|!=")
-
-
 #: What begins a case, whose answers do not replace those of the main line, and what ends it.
 _CASE, _SECTION = re.compile(r"(?:Case|Fall)\b"), re.compile(r"\d+\. ")
-
-
 #: Several numbers in a row, and the bar of a quotient, as MATLAB displays them below a name.
 _NUMBERS, _BAR = re.compile(r"[-+]?[\d.][\d.eE/+-]*(?:\s+[-+]?[\d.][\d.eE/+-]*)+"), re.compile(r"-{3,}")
 
@@ -590,17 +558,9 @@ def _of_tables(data: Mapping[str, Any]) -> Answer:
 
 
 _LIST = re.compile(r"\[[^][{}]*\]|\{[^][{}]*\}")
-
-
 _NOTHING = re.compile(r"none|keine|\[\s*\]|\{\s*\}|\u2205", re.IGNORECASE)
-
-
 _VECTORS = re.compile(r"\[[^][]*\](?:\s*[,;]\s*\[[^][]*\])*")
-
-
 _VECTOR = re.compile(r"\[[^][]*\]")
-
-
 #: What sets numbers apart besides a comma: the blanks of "1,5 -2,5", not those of "1 - 2".
 _APART = r"[;\n]|(?<=\d)\s+(?=[-+]?\d)"
 

@@ -44,15 +44,9 @@ if TYPE_CHECKING:
 
 #: A right value beside the one that was written, and the slip from one to the other.
 _BESIDE = re.compile(r"(.+?) is .+, not [^:]+(?:: (.+))?")
-
-
 _PART = re.compile(r"(?:in )?(?:entry|the coefficient|the constant term)\b")
-
-
 #: A term with its right coefficient, or with what a student's letters make of it: its signal alone is a place.
 _TERM = re.compile(r"the term (?:.* )?-?(\S+) (is missing|does not belong there)")
-
-
 _MORE = re.compile(r"and [0-9]+ more entr(?:y|ies)")
 
 
@@ -238,12 +232,8 @@ def _of_member(step: Step, name: str, member: str, view: ResultInConvention) -> 
 
 #: What a line may raise that is too large to be decided, or that the correction of a false one could not confirm.
 _OPEN = (NotShown, TooLarge, BudgetExceeded)
-
-
 #: Tasks whose values are right in many ways, though they design no gain.
 _CHOSEN = ("dual", "initial_state")
-
-
 _ORDER = re.compile(r"[<>]")
 
 

@@ -76,8 +76,6 @@ def first_kind(kinds: Iterable[Kind]) -> Explained:
 
 #: Entries of the data whose sign is changed one by one, before the search is given up.
 MOST_ENTRIES = 150
-
-
 #: Entries that are exchanged in pairs; entries whose signs are changed together.
 MOST_EXCHANGED, MOST_SIGNS = 12, 6
 

@@ -81,8 +81,6 @@ _FRAME = re.compile(r"[┌┐└┘─│]")
 #: The conditions of a region as a page frames them.
 _FRAMED = re.compile(r"\s*│ ([^│⎡⎢⎣=≈]*[<>][^│=≈]*) │\s*")
 _DRAWN = re.compile(r"[⎡⎢⎣]([^⎡⎢⎣⎤⎥⎦]*)[⎤⎥⎦]")
-
-
 #: Names of entries and of parts that a page explains below a formula: M(1,2), exp(A t)(1,2), *₁.
 _PLACE = re.compile(r"([A-Za-zα-ωΑ-Ω]\w*(?:\([A-Za-z ]+\))?)\((\d),(\d)\)")
 _ABBREVIATED, _DIGITS = re.compile(r"\*([₁-₉])"), str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")

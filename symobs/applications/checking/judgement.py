@@ -169,8 +169,6 @@ def closes_the_loop(result: Result, F: Matrix | Scalar | None) -> bool:
 
 #: Orders up to which the coordinates of a modal form without T are looked for: they are the square of it in unknowns.
 _MOST_STATES = 8
-
-
 #: A result in the coordinates of an answer, and what is said of them.
 Found = tuple["Result", str]
 
@@ -375,8 +373,6 @@ def _estimated(result: ReducedOrderObserver, F: Matrix, H: Matrix) -> Matrix | N
 
 #: What is raised where a question about a value is too large to be decided.
 UNDECIDED = (NotShown, TooLarge)
-
-
 #: So many faults of one value are named.
 _MOST_SAID = 3
 

@@ -43,17 +43,9 @@ if TYPE_CHECKING:
 
 
 _OPERATOR = re.compile(r"(!=|>=|<=|>|<|==|=)")
-
-
 _AND = re.compile(r"\band\b|&&?|[,;]")
-
-
 _OR = re.compile(r"\bor\b|\|\|?")
-
-
 _MOST, _DEEPEST = 40, 10
-
-
 #: A union of conjunctions.
 Union = tuple[tuple["Inequality", ...], ...]
 
@@ -189,8 +181,6 @@ def _chain(text: str, names: Any, where: str) -> list[Inequality]:
 
 #: So many points are tried where there is no exact region, before the question is left open.
 _MOST_TRIED = 4000
-
-
 _TRIED = tuple(map(Fraction, ["1", "2", "-1", "3", "1/2", "-2", "5", "10", "1/10", "-5", "20", "100"]))
 
 

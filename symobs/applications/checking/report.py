@@ -289,17 +289,9 @@ class CheckReport(ReportData):
 
 
 _TEXT: dict[str, Any] = {"type": "string"}
-
-
 _TEXT_OR_NULL: dict[str, Any] = {"type": ["string", "null"]}
-
-
 _TEXTS: dict[str, Any] = {"type": "array", "items": _TEXT}
-
-
 _NUMBER = {"type": "string", "pattern": "^[0-9]+(/[0-9]+)?$"}
-
-
 _NUMBER_OR_NULL = {"anyOf": [_NUMBER, {"type": "null"}]}
 
 
@@ -367,8 +359,6 @@ def schema() -> dict[str, Any]:
 
 
 _WIDTH = 100
-
-
 #: Longer lines of an answer are shown by their beginning.
 LONGEST = 300
 

@@ -25,15 +25,9 @@ if TYPE_CHECKING:
 
 
 MAX_TABLE_BYTES = 64 * 1024 * 1024
-
-
 #: Columns with a meaning of their own; every other one is a part, or is left alone.
 OWN = ("student", "convention", "variant", "steps")
-
-
 _FILES = (".toml", ".json", ".txt")
-
-
 #: The line above the header with which spreadsheets say what sets cells apart.
 _SEPARATOR = re.compile(r'"?sep=([;,\t])"?')
 
@@ -266,11 +260,7 @@ def _word(value: Any) -> str | None:
 
 
 SCHEMA = "symobs-variants/1"
-
-
 _MANIFEST, _ASSIGNMENT = "manifest.json", "assignment.csv"
-
-
 _MADE = "name what `symobs variants -o FOLDER` wrote"
 
 
@@ -368,8 +358,6 @@ def _typed(cell: str) -> str:
 
 #: What of a submission decides its report.
 _HANDED_IN = ("text", "values", "convention", "steps")
-
-
 DAMAGED = "this answer could not be checked: please report it"
 
 

@@ -64,8 +64,6 @@ VALUES = {
 
 #: The slips that a grader finds; the marks of a question may credit no others.
 SLIPS = ("sign", "sign_convention", "transposed", "entry", "rounded", "other_half")
-
-
 _ELSEWHERE = "leave it out with --asked, or have the answers checked by symobs check"
 
 
@@ -245,8 +243,6 @@ def _require_rational(
 
 #: So many problems make one export.
 MOST_PROBLEMS = 1000
-
-
 #: The file of a folder of variants that names them.
 MANIFEST = "manifest.json"
 
@@ -464,15 +460,9 @@ def _hash(text: str) -> str:
 
 
 _LETTER = re.compile(r"([A-Za-z])(?:_([A-Za-z0-9]+))?")
-
-
 #: Characters at which some platform begins a formula, a command or a gap.
 _SPECIAL = re.compile(r"[\\${}\[\]#~]")
-
-
 _NOT_TEX = '<span class="tex2jax_ignore mathjax_ignore">{}</span>'
-
-
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff\ud800-\udfff\u202a-\u202e\u2066-\u2069]")
 
 

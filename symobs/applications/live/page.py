@@ -98,8 +98,6 @@ def python_of(data: Mapping[str, Any], task: str) -> str:
 
 
 _PLACES = tuple(Path(__file__).parents[up] / "worked_examples" for up in (2, 3))
-
-
 #: One of a few hundred kilobytes takes longer to look at than to solve.
 _LARGE = {"cart_pole"}
 

@@ -26,20 +26,10 @@ if TYPE_CHECKING:
 
 #: A request nests no deeper, and an exact value of a symbol is no longer.
 MOST_DEPTH, LONGEST_VALUE = 20, 200
-
-
 WANTS = ("answer", "page", "point", "view", "export", "start", "begin")
-
-
 DETAILS = ("full", "outline", "answer")
-
-
 EXPORTS = ("latex", "toml", "python", "json", "html", "svg")
-
-
 FORMATS = ("mathml",)
-
-
 #: The frequency response of the loop: not wanted, without the ends of the gain, or whole.
 LOOPS = ("none", "moving", "rest")
 
@@ -51,21 +41,11 @@ _KEYS = {
 
 
 _COURSES = {"start", "estimate", "end", "count", "step"}
-
-
 _GOALS = {"settling", "overshoot", "gain", "phase"}
-
-
 _NAME = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|[A-Za-z_]\w*")
-
-
 _SYMBOL = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
-
-
 #: What a file holds against its answers, which are not those asked for here.
 _OF_A_FILE = {"expect", "id", "printed"}
-
-
 _MOST_INSTANTS, _MOST_NAMES = 1025, 60
 
 
@@ -320,8 +300,6 @@ def with_values(value: Any, values: Mapping[str, str]) -> Any:
 
 #: Keys of a specification that a link calls by shorter names.
 SHORT = {"control_poles": "control", "observer_poles": "observer", "observer": "order"}
-
-
 #: Matrices of which a list of numbers is a column.
 _COLUMNS = {"B", "E", "L"}
 

@@ -35,15 +35,9 @@ if TYPE_CHECKING:
 
 #: A whole page may take as many times the seconds of an answer.
 PAGE_FACTOR = 6
-
-
 #: So many questions are answered at a time; a further one waits until a child is free.
 _CHILDREN = 2
-
-
 _LOOK_EVERY, _MOST_SECONDS = 0.02, 600
-
-
 _LONG = {"page", "view", "export"}
 
 
@@ -106,15 +100,9 @@ def _read(body: bytes) -> dict[str, Any]:
 
 
 HOSTS = ("127.0.0.1", "::1", "localhost")
-
-
 _MOST_CONNECTIONS, _MOST_HEADERS, _TIMEOUT, _LINE = 16, 16 * 1024, 10.0, 65537
-
-
 #: What fits into one packet is sent as it is.
 _LEAST_COMPRESSED = 1400
-
-
 #: A header `Accept-Encoding` that takes gzip.
 _GZIP = re.compile(r"(?:^|,)\s*gzip\s*(?:,|$|;\s*q=(?!0(?:\.0*)?\s*(?:,|$)))", re.IGNORECASE)
 

@@ -14,7 +14,7 @@ from symobs.exact import Matrix
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.ground.errors import InputError
 from symobs.system import Symbols, read_matrix
-from symobs.tasks.analysis.time_response.response import course, rounded_up
+from symobs.tasks.analysis.time_response.courses import course, rounded_up
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -215,8 +215,6 @@ def pole_kinds(data: Mapping[str, Any]) -> list[list[Any]]:
 
 
 _DESIGNS = {"compensator", "observer", "state_feedback", "feedforward", "reduced_order_observer"}
-
-
 #: Which gains of single-input or single-output plants are known beforehand, by task.
 _KNOWN = {"compensator": ("K", "L"), "observer": ("L",), "state_feedback": ("K",)}
 

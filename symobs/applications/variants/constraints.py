@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 
 _SIGN, _BAR = 2, 3
-
-
 UNLIKE = "another structure"
 
 
@@ -134,8 +132,6 @@ def unlike(found: Mapping[str, Any], other: Mapping[str, Any], load: Fraction, *
 
 #: The constraints that name matrices of the plant, or answers.
 _NAMING = ("integer", "answers_nonzero", "digits", "denominators")
-
-
 _OF_PLANT = ("A", "B", "C", "D")
 
 

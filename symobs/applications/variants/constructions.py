@@ -241,20 +241,10 @@ def _of_full_rank(draw: Draw, height: int, width: int) -> Rows:
 
 
 _POLES = {"plant_poles": [-3, 3], "control_poles": [-3, -1], "observer_poles": [-4, -1]}
-
-
 _FULL = {"order": 3, **_POLES, "pairs": 0, "steps": 2}
-
-
 _MODAL = {"order": 3, "plant_poles": [-3, 3], "steps": 2}
-
-
 _DECAYING = {"order": 2, "plant_poles": [-4, -1], "steps": 1}
-
-
 _MEMBER = {"order": 3, "outputs": 2, "observer_poles": [-3, -1], "steps": 2, "of": "observer"}
-
-
 _PARTS = {"sizes": [1, 1, 1, 0], "plant_poles": [-4, 4], "steps": 2}
 
 

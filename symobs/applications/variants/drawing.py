@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 
 
 Rows: TypeAlias = tuple[tuple[int, ...], ...]
-
-
 Poly: TypeAlias = tuple[int, ...]
 
 
@@ -286,15 +284,9 @@ def each_signed_permutation(order: int) -> Iterator[tuple[tuple[int, ...], tuple
 
 
 VERSION = 1
-
-
 #: Seeds are the whole numbers up to here.
 LARGEST_SEED = 2**63 - 1
-
-
 _WORDS = 2**64
-
-
 Item = TypeVar("Item")
 
 

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
 
 SCHEMA = "symobs-variants/1"
-
-
 #: Cells that a spreadsheet would take for formulas begin with one of these.
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 

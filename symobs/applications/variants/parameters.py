@@ -34,14 +34,8 @@ KINDS = {
 
 
 _MOST_VALUES = 100_000
-
-
 _LARGEST = 10**6
-
-
 _MOST_ORDER = 8
-
-
 _RANGE = re.compile(r"([^:]+):([^:]+):([^:]+)")
 
 
@@ -246,23 +240,13 @@ _READERS: dict[str, Callable[[Mapping[str, Any], str, Note], list[Any] | None]] 
 
 #: Tables whose texts are expressions, and texts for people, where a letter stands in braces.
 _EXPRESSIONS = ("plant", "specification", "constants", "values", "marking")
-
-
 _WORDS = ("title", "text")
-
-
 #: A relation among parameters, as [variants.parameters] lists them: both sides, and the sign between.
 RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<|=)(.*)$", re.DOTALL)
-
-
 #: A number, which may end in a power of ten, or a name.
 _TOKEN = re.compile(r"\d+\.?\d*(?:[eE][-+]?\d+)?|([A-Za-z][A-Za-z0-9_]*)")
-
-
 #: A name in braces that are not the argument of a command, or an exponent or index, of a formula.
 _PLACEHOLDER = re.compile(r"(?<![\w^_}])\{([A-Za-z][A-Za-z0-9_]*)\}")
-
-
 #: Where a whole number stands safely without parentheses: between these.
 _BEFORE, _AFTER = "+-([,;", "+-)],;"
 

@@ -42,18 +42,10 @@ if TYPE_CHECKING:
 
 
 MOST = 10_000
-
-
 #: Seconds of work handed over at a time: what is begun beyond the last variant is done for nothing.
 _CHUNK = 0.05
-
-
 _SAME = "the same as another variant"
-
-
 _OF_ONE_KIND = "the first one is of a rare kind: draw distinct poles, or take another seed"
-
-
 PROFILES = ("loose", "strict")
 
 
@@ -295,12 +287,8 @@ def _raise_unknown(result: Mapping[str, Any]) -> None:
 
 
 SUMMARY_SCHEMA = "symobs-check-summary/1"
-
-
 #: A mean that is off by more standard errors than these is no accident.
 ERRORS = 3
-
-
 #: So many marks more than variants are needed for the spread of the marks to be known.
 FEWEST = 10
 
@@ -372,11 +360,7 @@ def as_text(listed: tuple[AnsweredVariant, ...]) -> str:
 
 
 _TEXT: dict[str, Any] = {"type": "string"}
-
-
 _COUNT: dict[str, Any] = {"type": "integer", "minimum": 0}
-
-
 _ANY: dict[str, Any] = {"type": "object"}
 
 

@@ -107,17 +107,9 @@ def read_constraints(value: object, errors: Errors) -> dict[str, Any]:
 
 
 KEYS = ("construct", "distinct", "difficulty", "attempts", "version", "parameters", "constraints")
-
-
 LIKE = ("this", "base")
-
-
 ATTEMPTS = 20_000
-
-
 LOAD = Fraction(1, 5)
-
-
 #: Letters with a meaning of their own in the texts of a file.
 _TAKEN = {"i", "j", "s", "t", "z"}
 

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
 
 EXIT_BUG, EXIT_NO, EXIT_UNDECIDED, EXIT_INTERRUPTED = 1, 4, 5, 130
-
-
 #: Seconds of work before anything is said of it.
 SILENT = 2.0
 NOT_ENOUGH_MEMORY = "undecided: the memory there is was not enough; ask for less, or put numbers in place of symbols"

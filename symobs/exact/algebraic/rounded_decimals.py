@@ -36,12 +36,8 @@ if TYPE_CHECKING:
 
 
 _DECIMAL = re.compile(r"(?P<whole>[0-9]*)(?:\.(?P<places>[0-9]*))?(?:[eE](?P<power>[+-]?[0-9]+))?")
-
-
 #: With more decimals in one number only the printed values themselves are compared.
 _MOST_DECIMALS = 40
-
-
 _WORKING_BITS, _RADIUS, _STEPS = 256, 60, 60
 
 
@@ -292,8 +288,6 @@ def _between(value: Scalar, ends: tuple[Fraction, Fraction]) -> bool:
 
 #: A decimal of more places is written as a fraction.
 _MOST_PLACES = 12
-
-
 #: From this denominator on a reader wants to see the decimals of a fraction.
 _HARD_TO_READ = 10
 

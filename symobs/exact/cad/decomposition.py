@@ -214,8 +214,6 @@ def _key(polynomial: fmpz_poly) -> tuple[int, ...]:
 
 #: A polynomial in y with coefficients in Q(α), lowest first, each reduced modulo the minimal polynomial.
 Upright: TypeAlias = "list[fmpq_poly]"
-
-
 #: Up to this degree of α Euclid's algorithm over Q(α) ends in reasonable time.
 LARGEST_DEGREE = 16
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 
 VARIABLES = ("s", "z", "t")
-
-
 #: The generator that stands for an eigenvalue.  No problem can declare it: it is a keyword of Python.
 EIGENVALUE = "lambda"
 
@@ -212,8 +210,6 @@ class Route:
 
 #: Polynomials of up to this many terms are carried by composition.
 _SHORT = 40
-
-
 #: The most routes that a field remembers.
 _ROUTES = 256
 
@@ -226,8 +222,6 @@ def context_of(names: Iterable[str], ordering: Ordering) -> fmpz_mpoly_ctx:
 
 #: The fields in use: two of the same names would have contexts whose polynomials do not meet.
 _FIELDS: WeakValueDictionary[tuple[str, ...], Field] = WeakValueDictionary()
-
-
 _MAKING = Lock()
 
 

@@ -21,24 +21,14 @@ if TYPE_CHECKING:
 
 
 Rows: TypeAlias = tuple[tuple[fmpz_mpoly, ...], ...]
-
-
 #: Up to this many terms a fingerprint is the whole text; of longer ones the length and some coefficients are told.
 _WHOLE_TEXT, _TOLD = 40, 6
-
-
 #: Of this many terms, or some more, the exponents are looked at where polynomials are told apart.
 _LOOKED_AT = 6
-
-
 #: From this many terms on a common divisor is first looked for in a leading coefficient.
 _LONG = 150
-
-
 #: `fmpz_mpoly.factor` sorts factors through C integers and fails from here on; `fmpq_mpoly.factor` does not.
 _COEFFICIENT_LIMIT = 2**31
-
-
 #: Up to this order determinants go by minors, which keeps sparse parametric entries small; beyond, by elimination.
 MINORS_UP_TO = 8
 

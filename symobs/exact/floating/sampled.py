@@ -26,12 +26,8 @@ if TYPE_CHECKING:
 
 
 HOLDS = ("zoh", "tustin")
-
-
 #: Bits of the enclosures that are tried in turn until both ends round to one double.
 _BITS = (128, 512, 2048)
-
-
 #: Below this a number is 0 in double precision: half of the smallest double.
 _SMALLEST = Fraction(1, 2**1075)
 
@@ -141,8 +137,6 @@ def _doubles(matrix: arb_mat) -> Matrix:
 
 #: Points that are evaluated together: a few arrays of this length fit into the cache of a processor.
 BLOCK = 1 << 14
-
-
 Term: TypeAlias = tuple[float, dict[str, int]]
 
 

@@ -121,22 +121,12 @@ def _mapped(enclosed: Enclosed, margin: Fraction, size: Fraction, bits: int) -> 
 
 #: Steps for which the bound is found at least.
 STEPS = 1000
-
-
 #: Bits that are tried in turn: products of enclosures grow by the absolute values of the entries.
 _BITS_OF_POWERS = (256, 1024, 4096)
-
-
 #: An enclosure of which this power of two is uncertain is too wide.
 _UNCERTAIN = -20
-
-
 _SQUARINGS = 20
-
-
 _HALF = 0.5
-
-
 #: Rounding to nearest, and what is lost where a product underflows.
 _UNIT, _UNDERFLOW = -53, -1074
 

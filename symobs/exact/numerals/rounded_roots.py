@@ -60,15 +60,9 @@ def is_written_exactly(exact: Scalar, text: str) -> bool:
 
 
 RootText: TypeAlias = tuple[str, str, bool]
-
-
 #: A part of a root as an enclosure: a number with itself, or bounds of it.
 Bounds: TypeAlias = tuple[Scalar, Scalar]
-
-
 _ZERO = Scalar.of(0)
-
-
 #: Places after the point, beyond the digits asked for, of the boxes around roots without a closed form.
 _MORE_PLACES = 40
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 #: Powers of ten from which on an exact number, and the least one below which any number, is written with a power of ten.
 _LONGEST_WHOLE, _LONGEST_ZEROS = 9, -4
-
-
 #: Bits of the approximations that a rounding is read from.
 _BITS = (64, 256, 1024, 4000)
 

@@ -64,12 +64,8 @@ def scalar_to_sympy(
 
 #: The bits of a float of double precision.
 _DOUBLE = 53
-
-
 #: Sums with more terms are sorted here: SymPy compares expressions one with another.
 _LONG = 50
-
-
 _SYMPYS_ORDER = cmp_to_key(sympy.Basic.compare)
 
 

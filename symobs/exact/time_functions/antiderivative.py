@@ -100,8 +100,6 @@ def _coefficient(value: Scalar, power: int, name: str) -> Scalar:
 
 
 Value = TypeVar("Value", Scalar, Matrix)
-
-
 #: Beyond this degree of a denominator no rational antiderivative is sought: the equations grow with it.
 DEGREE_UP_TO = 12
 

@@ -260,16 +260,10 @@ def _over_its_field(matrix: Matrix) -> Matrix:
 
 #: Bits that are tried in turn until all enclosures are narrow.
 _BITS = (96, 256, 512, 1024, 2048, 4096)
-
-
 #: So many columns are enclosed before they are doubled as whole numbers.
 _ENCLOSED = 16
-
-
 #: 0 ± 1.
 _UNIT = arb(0, 1)
-
-
 #: Bits of a rational number near to one that is none.
 _NEAR = 240
 

@@ -39,8 +39,6 @@ if TYPE_CHECKING:
 
 
 _ACCENTS = {"bar": "\N{COMBINING MACRON}", "tilde": "\N{COMBINING TILDE}", "hat": "\N{COMBINING CIRCUMFLEX ACCENT}"}
-
-
 _ARGUMENT = re.compile(r"\(.*\)$")
 
 
@@ -93,11 +91,7 @@ def of_determinant(gramian: LetterForm) -> dict[str, LetterForm]:
 
 #: The letters whose meaning changes its sign with the control law, and those with the observer matrix.
 FEEDBACK_GAINS = frozenset({"K", "K_1", "K_2", "K_0", "K_G", "K_y", "K_r"})
-
-
 OBSERVER_GAINS = frozenset({"L", "L_0", "L_G", "L_r"})
-
-
 #: Letters that a page has only where it speaks of an observer whose state is no estimate of x, of reduced order mostly.
 OF_REDUCED_ORDER = frozenset({"F_z", "G_z", "H_z", "M_z", "A_12", "H_d"})
 
@@ -240,20 +234,10 @@ def conventions() -> dict[str, Convention]:
 
 
 _MOST_BYTES = 20_000
-
-
 _SHOWN = 40
-
-
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,39}")
-
-
 _SPELLING = r"[A-Za-z]+[0-9]*(?:_[A-Za-z0-9]+)*"
-
-
 _LETTER = re.compile(_SPELLING)
-
-
 #: The same in a law, no longer than a letter may be.
 _GAIN = rf"(?=\w{{1,{_SHOWN}}}\b)({_SPELLING})"
 
@@ -281,8 +265,6 @@ _TEXTS = {
 
 
 _TABLES = ("letters", "letters_of_reduced_order")
-
-
 #: Letters that nearly every page speaks of: no other letter may be written like one of them.
 _COMMON = ("A", "B", "C", "D", "K", "L", "x", "x_hat", "u", "y", "e", "F", "T")
 

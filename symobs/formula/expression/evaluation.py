@@ -48,24 +48,12 @@ if TYPE_CHECKING:
 
 
 _NUMBER = r"[0-9]{1,18}(?:\.[0-9]{1,18})?"
-
-
 _ATOM = rf"(?:[A-Za-z][A-Za-z0-9_]*|{_NUMBER})"
-
-
 _CELL = re.compile(rf"[+-]?{_ATOM}(?:[*/]{_ATOM}){{0,8}}")
-
-
 _SIGNED = rf"[+-]?{_NUMBER}(?:/{_NUMBER})?"
-
-
 #: A real part, if any, and an imaginary one: -1+3/2i.
 _COMPLEX = re.compile(rf"(?:({_SIGNED})(?=[+-]))?([+-]?)({_NUMBER}(?:/{_NUMBER})?)?([A-Za-z])")
-
-
 _ATOMS = re.compile(rf"([*/+-]?)({_ATOM})")
-
-
 _MOST_NAMES = 100
 
 
@@ -136,12 +124,8 @@ def _number(text: str) -> Scalar:
 
 
 MOST_CHARACTERS = 10_000
-
-
 #: The highest degree of a root of a number.
 _MOST_DEGREE = 12
-
-
 _SMALLER = "write something smaller, with a symbol in place of what is large"
 
 

@@ -22,20 +22,10 @@ if TYPE_CHECKING:
 
 #: The declared names; None declares every well-formed name.
 Names: TypeAlias = "Mapping[str, object] | None"
-
-
 FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "sinh", "cosh", "tanh")
-
-
 RESERVED = ("oo", "inf", "nan", "pi")
-
-
 IMAGINARY = ("i", "j", "I")
-
-
 LONGEST_NAME = 64
-
-
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
 
@@ -145,14 +135,8 @@ class Scope:
 
 #: Signs in place of the minus of ASCII, and blanks in place of its space.
 MINUS = "-\u2212\u2010\u2011\u2013"
-
-
 BLANK = "\u00a0\u2009\u202f\u200b\u2060\ufeff"
-
-
 SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹"
-
-
 _BELOW = "₀₁₂₃₄₅₆₇₈₉"
 
 
@@ -165,12 +149,8 @@ _SPELT = {letter: name for name, letter in GREEK_LETTERS.items()} | {
 
 
 _SANS_SERIF = "\U0001d5a0-\U0001d5d3"
-
-
 #: A name as it is typed, or a Greek letter or one without serifs, with indices below.
 PRINTED_NAME = rf"(?:[A-Za-z][A-Za-z0-9_]*|[{''.join(_SPELT)}{_SANS_SERIF}](?:_[A-Za-z0-9_]+)?)[{_BELOW}]*"
-
-
 _PAIR = re.compile(r"([^±]*)±([^±]*)")
 
 

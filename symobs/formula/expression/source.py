@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
 
 MOST_SHOWN = 60
-
-
 #: An error that points into a text shows this much of it, more than half of it before the place.
 _EXCERPT, _BEFORE = 40, 24
 
@@ -69,21 +67,11 @@ class Token(str):
 
 
 Number: TypeAlias = Scalar | Complex
-
-
 MOST_EXPONENT = 1_000
-
-
 #: A coefficient of 10,000 bits still prints as a decimal number; a polynomial still lists 10,000 coefficients.
 MOST_BITS = 10_000
-
-
 MOST_DEGREE = 10_000
-
-
 MOST_TERMS = 20_000
-
-
 #: What all operations of one call may cost together, in machine words written: about a second of work at the worst.
 MOST_WORK = 3_000_000
 
@@ -140,8 +128,6 @@ def _bounded(names: frozenset[str], degree: int, terms: int, bits: int) -> Size:
 
 
 _ONE = Size(frozenset(), 0, 1, 1)
-
-
 Parts: TypeAlias = tuple[Size, Size]
 
 

@@ -142,21 +142,11 @@ def _product(parts: tuple[SyntaxNode, ...], *, tight: bool) -> str:
 
 
 _BINDING = {"ADD": 1, "sign": 2, "MULTIPLY": 3, "inner sign": 4, "POWER": 5, "APPLY": 6}
-
-
 _OPERAND_STARTS = ("VALUE", "FUNCTION", "_OPEN", "LEFT")
-
-
 _OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT", "PRIME")
-
-
 #: A sign behind one of these belongs to the one operand that follows, not to the whole term.
 _BEFORE_INNER_SIGN = ("MULTIPLY", "POWER", "inner sign")
-
-
 EQUAL_ROWS = "give every row the same number of entries"
-
-
 #: Outside brackets `2 g` and `C A` are products, inside they are two entries.
 _SPACED_PRODUCT = re.compile(r"([0-9]|\b[A-Z]) +([A-Za-z(])")
 

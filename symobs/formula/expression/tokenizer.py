@@ -39,11 +39,7 @@ if TYPE_CHECKING:
 
 
 OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT", "PRIME")
-
-
 _OPENING_KINDS, _CLOSING_KINDS = ("_OPEN", "LEFT"), ("_CLOSE", "_RIGHT")
-
-
 _LONGEST_READING = 100
 
 
@@ -90,18 +86,10 @@ def _term_backwards(tokens: Sequence[Token], end: int) -> Iterator[int]:
 
 
 MOST_NESTING = 100
-
-
 #: After this many names that are not declared a text is read no further.
 _MOST_UNKNOWN = 20
-
-
 MOST_DIGITS = 1_000
-
-
 MOST_POWER_OF_TEN = 1_000
-
-
 MOST_NAMES = 400
 
 
@@ -117,14 +105,8 @@ TOKENS = (
 
 
 _ROW = re.compile(r"[^][;\r\n]*")
-
-
 _CLOSING = {"(": ")", "[": "]"}
-
-
 _CALL = re.compile(r"[ \t\r\n]*\(")
-
-
 _POWER = re.compile(r"[ \t\r\n]*(?:\*\*|\^)")
 
 
@@ -137,8 +119,6 @@ _FUNCTIONS_ELSEWHERE = re.compile(
 
 #: What follows the 0 of a number in base 16, 8 or 2, and what is a power of ten in Fortran.
 _OTHER_BASE, _POWER_OF_TEN = re.compile(r"[xX][0-9A-Fa-f]+|[oO][0-7]+|[bB][01]+"), re.compile(r"[dD][0-9]+")
-
-
 _OPERAND_STARTS = ("NUMBER", "NAME", "OPEN")
 
 

@@ -115,8 +115,6 @@ _require_phrases("ROWS", (key for row in ROWS.values() for key in row.split()))
 
 #: Phrases before a display that says what the short names stand for in which answers are written: no page goes without.
 SPELLS_OUT = _listing("SPELLS_OUT")
-
-
 #: The words of pages that belong to no phrase, and how many of a thing there are: `english.words_phrases` explains both.
 WORDS: dict[str, str] = _collected("WORDS")
 COUNTS: dict[str, dict[str, str]] = _collected("COUNTS")

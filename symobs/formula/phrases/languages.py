@@ -45,18 +45,10 @@ class StateChoice:
 
 #: What languages put into words.
 SPOKEN = (Counted, StateChoice)
-
-
 _FOLDER = Path(__file__).parent
-
-
 _WORDS = "words.toml"
-
-
 #: Words of a phrase for one root in its slot, and for several: `the <mode|modes> {roots}`.
 COUNTED = re.compile(r"<([^<|>]*)\|([^<|>]*)>")
-
-
 _PLACES = {"ch.": "chapter", "sec.": "section"}
 
 

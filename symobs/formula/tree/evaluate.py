@@ -208,8 +208,6 @@ class Modular:
 
 
 _MINUS_ONE = Scalar.of(-1)
-
-
 _OF_MATRICES = {"det", "adj", "rank"}
 
 

@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias
+from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias, TypeVar
 
 from symobs.exact import Matrix, Scalar, product_of
 from symobs.formula.tree.nodes import (
     Apply,
     At,
     Block,
+    Decimals,
     Derivative,
     Formula,
     Identity,
@@ -37,8 +38,10 @@ from symobs.formula.tree.nodes import (
 from symobs.formula.tree.term import Environment, Term, factors_of, terms_of
 from symobs.ground.dataclass import dataclass
 
+Found = TypeVar("Found", Formula, Relation)
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     #: Rows and columns; none of a scalar, None where only the place can tell.
     Shape: TypeAlias = tuple[int, ...] | None
@@ -53,17 +56,17 @@ _VALUE, _PENCIL, _UNIT = "#", "pencil", Identity(0)
 
 
 def written(text: str, environment: Environment, **slots: Any) -> Term:
-    """Return the term of a text; a slot is a value, a term, or the letter that stands for one of the text.
+    """Return the term of a text; a slot is a value or a term for `{name}`, or the letter that stands for one of the text.
 
-    Raises `ValueError` where the text is no formula.
+    Raises `ValueError` where the text is no formula, or a value has the name of a letter in it.
     """
-    found = read_formula(text)
+    found = _with_places(read_formula, text, slots)
     return Term(_Place(environment, slots).put(found) if _depends(found, slots) else found, environment)
 
 
 def written_relation(text: str, environment: Environment, **slots: Any) -> Relation:
     """Return the relation of a text, with slots."""
-    found = read_relation(text)
+    found = _with_places(read_relation, text, slots)
     return _Place(environment, slots).relation(found) if any(_depends(m, slots) for m in found.members) else found
 
 
@@ -85,6 +88,13 @@ def read_relation(text: str) -> Relation:
         alone = reader.next == _VALUE and (len(reader.left) == 1 or reader.left[-2] in OPERATORS)
         members.append(Apply(reader.take(_VALUE), members[0]) if alone else reader.sum())
     return Relation(tuple(members), tuple(operators)) if operators and not reader.left else reader.refuse()
+
+
+def _with_places(read: Callable[[str], Found], text: str, slots: Mapping[str, Any]) -> Found:
+    for name, slot in slots.items():
+        if not isinstance(slot, str) and re.search(rf"(?<!{{)\b{name}\b", text):
+            raise ValueError(f"{text!r} has a letter {name}, and a value of that name")
+    return read(text)
 
 
 def stacked(row: str, of: str, count: int, *, across: bool = False) -> str:
@@ -252,6 +262,7 @@ class _Place:
 
     def letter(self, name: str) -> Formula:
         slot = self.slots[name[1:-1]] if name[0] == "{" else self.slots.get(name, name)
+        slot = slot if name[0] == "{" or isinstance(slot, str) else name
         if isinstance(slot, str):
             return Letter("s" if slot == self.environment.variable and not self.environment.defines(slot) else slot)
         return slot.formula if isinstance(slot, Term) else Literal(Scalar.of(slot) if isinstance(slot, int) else slot)
@@ -265,7 +276,7 @@ class _Place:
                 if name:
                     return getattr(self.environment.values.get(name, _ZERO), "shape", ())
                 return self.shape(formula)
-            case Literal(value):
+            case Literal(value) | Decimals(value):
                 return getattr(value, "shape", ())
             case Identity(order):
                 return (order, order) if order else None

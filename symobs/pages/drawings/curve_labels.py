@@ -185,20 +185,12 @@ def _farthest(points: Sequence[Point], first: int, last: int) -> tuple[float, in
 
 #: Points between a curve and its label, around a label, from one trial to the next; beyond _FAR, distance is no gain.
 _GAP, _CLEAR, _STEP, _FAR = 3.5, 2.0, 5.0, 30.0
-
-
 #: Lines are looked at in pieces of so many segments, since most lie far from a label.
 _SEGMENTS = 6
-
-
 #: What it is worth, in points of distance, to stand outside the shaded areas, on no pale line, near a curve's middle.
 _UNSHADED, _FREE, _MIDDLE = 6.0, 5.0, 4.0
-
-
 #: What is written at a curve: its equation, or what it is the response of.
 Name = TypeVar("Name", bound="Formula | Relation")
-
-
 Lines: TypeAlias = "tuple[tuple[Point, ...], ...]"
 
 

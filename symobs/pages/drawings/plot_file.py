@@ -32,20 +32,10 @@ if TYPE_CHECKING:
 
 
 _COLOURS = {"ink": "#1e3c6e", "text": "black", "pale": "0.78"}
-
-
 _SHADE = "#e4e7ed"
-
-
 _FONT: dict[str, Any] = {"family": ["STIXGeneral", "DejaVu Sans"], "math_fontfamily": "stix"}
-
-
 _SPACE = 0.28 * FONT_SIZE
-
-
 _RESOLUTION = 220
-
-
 _HORIZONTAL, _VERTICAL = {"west": "left", "east": "right"}, {"north": "top", "south": "bottom"}
 
 
@@ -201,8 +191,6 @@ def _sign(axes: Any, sign: Sign) -> None:
 
 
 SUFFIXES = (".svg", ".png", ".pdf", ".tex")
-
-
 _BY_MATPLOTLIB = {".png": "png", ".pdf": "pdf"}
 
 

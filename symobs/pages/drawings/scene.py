@@ -27,15 +27,9 @@ if TYPE_CHECKING:
 
 #: What is written: mathematics, in several lines for a system of equations, or a text such as a number of a tick.
 Content: TypeAlias = Formula | Relation | Conjunction | str
-
-
 Point: TypeAlias = tuple[float, float]
-
-
 #: How wide and how high a format writes something, in points.
 Measure: TypeAlias = "Callable[[Content], tuple[float, float]]"
-
-
 FONT_SIZE = 9.0
 
 
@@ -150,8 +144,6 @@ STYLES = {
 
 
 RADIUS = {"dot": 1.6, "cross": 2.2, "ring": 2.3}
-
-
 ARROW = 5.0
 
 
@@ -203,12 +195,8 @@ def whole_of(strokes: Iterable[Stroke], texts: Iterable[TextLabel], measure: Mea
 
 
 Piece = TypeVar("Piece")
-
-
 #: Points from the picture to the first row, and from row to row.
 ABOVE, ROW = 9.0, 12.5
-
-
 #: A row is at least as wide as this, however narrow the picture.
 NARROWEST = 250.0
 

@@ -47,34 +47,18 @@ if TYPE_CHECKING:
 
 
 FONTS = "'STIX Two Text','Latin Modern Roman','Cambria','Times New Roman','DejaVu Serif',serif"
-
-
 #: Sub- and superscripts: their size, and how far they are lowered, in parts of the size of the font.
 _SCRIPT, _LOWERED = 0.72, {"sub": 0.2, "super": -0.36, "": 0.0, "dot": -0.2}
-
-
 #: The character after this one stands below the letter before, upright.
 BELOW = "\ue000"
-
-
 #: A dot above an accent: fonts put both at one place, so it is a character of its own, set back over the letter.
 DOT, _SET_BACK = "\ue001", 0.36
-
-
 _ACCENT_DOT, _THIN_SPACE = "\u0307", "\u2009"
-
-
 #: Two factors side by side; what stands below a letter on a terminal: K_d, χ_(A-BK).
 _FACTORS = re.compile(r"(?<=[^-+=·,;]) (?=[^-+=·])")
-
-
 _BELOW = re.compile(r"_\(?([\w-]+)\)?")
-
-
 #: In parts of the size of the font: the height of a line, of a fraction, and what a rule is longer than its fraction.
 _LINE, _FRACTION, _RULE = 1.3, 2.7, 0.3
-
-
 #: Names of several letters, such as Re, stand upright.
 _WORDS = re.compile(r"[A-Za-z]{2,}")
 
@@ -201,14 +185,8 @@ def _characters(piece: TextRun) -> Iterator[tuple[str, str, bool]]:
 
 
 _INK, _PIXELS = "#3b74c9", 4 / 3
-
-
 _CLASSES = {"ink": "ink", "text": "axis", "pale": "pale"}
-
-
 _ANCHORS = {"west": "start", "east": "end", "right": "start"}
-
-
 #: How far the middle of a text stands from its anchor, in parts of the size of the font.
 _OFFSETS = {"north": (0.0, 0.45), "south": (0.0, -0.5), "above": (0.0, -0.75), "right": (0.4, 0.0)}
 
@@ -221,16 +199,10 @@ _STYLE = (
 
 
 _OWN_FILE = "svg{color-scheme:light dark;color:CanvasText}"
-
-
 #: In a diagram: the size of its font and the widest drawing, in points; in parts of that size what is left free around,
 #: the radii of junctions and branches, the heads of arrows, and where signs stand, along a wire and beside it.
 _EM, _WIDEST = 12.0, 46.0 * 12
-
-
 _MARGIN, _JUNCTION, _BRANCH, _HEAD = 0.7, 0.475, 0.16, 0.62
-
-
 _ALONG, _RIGHT, _OVER, _SIGN = 0.6, 0.66, 0.6, 0.85
 
 

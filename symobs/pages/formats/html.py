@@ -115,20 +115,10 @@ def folded(solution: str, language: str) -> str:
 
 #: Stands for the place of a part on a sheet until it is known; no text contains it.
 _SOMEWHERE = "\0"
-
-
 _PICTURES = {"png": "image/png", "jpg": "image/jpeg"}
-
-
 _INSET = 2.0  # em, as in the style
-
-
 _CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff\ud800-\udfff\u202a-\u202e\u2066-\u2069]")
-
-
 _OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
-
-
 #: Mathematics with the signs that stand at it, between which browsers would break a line.
 _WITH_SIGNS = re.compile(r"[(\[]*<math>(?:(?!</math>).)*</math>[)\],.;:]*")
 

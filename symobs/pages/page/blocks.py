@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 
 Inline: TypeAlias = str | Formula | Relation | Roots
-
-
 Inlines: TypeAlias = tuple[Inline, ...]
 
 

@@ -70,8 +70,6 @@ P = TypeVar("P", bound="Printer[Any]")
 
 #: The conditions of a case, its fixed modes, and the answer there.
 Row: TypeAlias = "tuple[tuple[Relation, ...], Inlines, Inlines]"
-
-
 #: The sections of a question.
 _UNNUMBERED = {"task", "tasks"}
 

@@ -47,20 +47,12 @@ if TYPE_CHECKING:
 
 #: Where in a phrase the number of what it rests on stands, if not at its end.
 MARK = "§"
-
-
 #: How a slot is written whose equation is referred to by its number.
 NUMBER = "number"
-
-
 #: How a slot is written whose names stand between parentheses.
 LIST = "list"
-
-
 #: A pair of matrices in a phrase, `($C$, $A$)`, and the first members of those that are observable.
 _PAIR = re.compile(r"\((\$[^$]*\$), (\$[^$]*\$)\)")
-
-
 _OUTPUTS = {"$C$", "$A_12$", "$C_dual$"}
 
 

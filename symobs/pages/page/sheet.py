@@ -28,12 +28,8 @@ if TYPE_CHECKING:
 
 #: A sheet of more problems than this begins with a table of contents.
 WITHOUT_CONTENTS = 6
-
-
 #: So many columns of a table of points stand beside each other.
 _COLUMNS = 10
-
-
 _PREFIX = "sheet_"
 
 

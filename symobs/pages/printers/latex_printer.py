@@ -25,35 +25,17 @@ if TYPE_CHECKING:
 
 
 _WORD = r"\mathit"
-
-
 #: Behind a number it would be read as a mixed one.
 _NUMERIC_FRACTION = re.compile(r"\\[dt]?frac\{?\d")
-
-
 _FRACTION_OF_LETTERS = re.compile(r"-?\\frac\{(?!\d+\}\{\d+\}$)")
-
-
 #: amsmath's matrices have ten columns; wider ones are set as arrays.
 _MATRIX_COLUMNS = 10
-
-
 #: In running text (in em, or digits): what still goes under a fraction bar, into a matrix, into an unbroken number.
 _NARROW = 3.0
-
-
 _WIDE = 12.0
-
-
 _LONG_NUMBER = 16
-
-
 _DIGITS = 5
-
-
 _UNBREAKABLE = _LONG_NUMBER * widths.DIGIT
-
-
 #: A display of more lines may be broken over pages.
 _PAGE_OF_ROWS = 8
 
@@ -503,8 +485,6 @@ _MATHEMATICS = {character: rf"\{name}" for character, name in _GREEK.items()} | 
 
 
 _SHOWN = _SPECIAL | _TYPOGRAPHY | {character: f"${latex}$" for character, latex in _MATHEMATICS.items()}
-
-
 _ACCENTS = {"\u0302": r"\hat", "\u0303": r"\tilde", "\u0304": r"\bar", "\u0307": r"\dot", "\u0308": r"\ddot"}
 
 
@@ -516,23 +496,11 @@ LETTERS = frozenset(
 
 
 _WHITE = re.compile(r"[^\S\u00a0]+")
-
-
 _CLUSTER = re.compile("(.)([\u0300-\u036f]*)", re.DOTALL)
-
-
 _OPENING_QUOTE = re.compile(r'(?:^|(?<=[\s(\[{]))"')
-
-
 _RUN_TOGETHER = {"--", "''", "``", "?`", "!`"}  # TeX makes one character of each
-
-
 _AS_IT_IS = re.compile("[A-Za-z0-9.,;:()=+/]*")
-
-
 _LONG_WORD = 40  # characters; a longer one must be allowed to break, or it leaves the page
-
-
 _PIECE = 20
 
 

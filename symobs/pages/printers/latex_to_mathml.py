@@ -28,70 +28,30 @@ if TYPE_CHECKING:
 
 
 THIN = '<mspace width="0.17em"/>'
-
-
 MINUS, PLUS = "−", "+"
-
-
 #: Signs that are read out, not seen: between a function's name and its argument, and between factors.
 APPLY = "<mo>&#x2061;</mo>"
-
-
 TIMES = "<mo>&#x2062;</mo>"
-
-
 TIMES_OR_BREAK = '<mo form="infix">&#x2062;</mo>'
-
-
 OPENING = '<mo form="prefix" stretchy="false">(</mo>'
-
-
 CLOSING = '<mo form="postfix" stretchy="false">)</mo>'
-
-
 LIST = '<mo form="prefix" stretchy="false">[</mo>', '<mo form="postfix" stretchy="false">]</mo>'
-
-
 DOT = '<mo form="infix">⋅</mo>'
-
-
 SLASH = '<mo form="infix" lspace="0" rspace="0">/</mo>'
-
-
 BAR = '<mo form="postfix" fence="true" stretchy="true">|</mo>'
-
-
 COMMA = '<mo separator="true">,</mo>'
-
-
 SEMICOLON = '<mo separator="true">;</mo>'
-
-
 #: Makes a row of a matrix as high as one of letters with a descender, so that rows of digits stand at its middle.
 STRUT = '<mspace height="0.72em" depth="0.22em"/>'
-
-
 LARGE = ' displaystyle="true"'
-
-
 TRANSPOSE = "<mi>\N{MATHEMATICAL SANS-SERIF CAPITAL T}</mi>"
-
-
 BINARY = {sign: f'<mo form="infix">{sign}</mo>' for sign in (PLUS, MINUS)}
-
-
 RELATIONS = {key: f'<mo form="infix">{escape(sign)}</mo>' for key, (_, sign) in OPERATORS.items()} | {
     "~": '<mo form="infix">\N{TILDE OPERATOR}</mo>'
 }
-
-
 #: A formula in running text is kept whole up to the first width (in em), broken after relations up to the second.
 _KEPT, _AT_RELATIONS = 9.0, 15.0
-
-
 _FEW = frozenset(RELATIONS.values())
-
-
 _MANY = _FEW | {*BINARY.values(), TIMES_OR_BREAK, COMMA, SEMICOLON, SLASH}
 
 
@@ -196,8 +156,6 @@ _ACCENTS = {
 
 
 _FUNCTIONS = frozenset(("det", "sin", "cos", "sinh", "cosh", "exp", "rank", "tan", "ln", "min", "max"))
-
-
 _SPACES = frozenset((" ", "\\,", "\\;", "\\ ", "\\!"))
 
 

@@ -44,18 +44,10 @@ if TYPE_CHECKING:
 
 
 _DIGITS_TOGETHER = 30
-
-
 _ROWS_TOGETHER = 30
-
-
 #: Lines evened out where the last would be shorter than this part of the width.
 _FEW_LINES = (2, 3, 4)
-
-
 _SHORT_END = 0.3
-
-
 #: A denominator that takes more of the line than this is not set under a fraction bar.
 _WIDEST_DENOMINATOR = 0.7
 
@@ -346,12 +338,8 @@ def _is_table(formula: Formula) -> bool:
 
 #: A left member wider than this part of the line stands on a line of its own.
 _WIDEST_LEFT = 0.4
-
-
 #: An answer of more lines than this is not framed; its name is.
 _LONGEST_FRAME = 12
-
-
 #: Entries are named after a matrix whose own name is not wider than this (in em, or columns).
 _WIDEST_HEAD = 8
 
@@ -558,32 +546,14 @@ class Layout(Generic[B]):
 
 
 TEXT_WIDTH = 40.0  # the line of the template is 41.5 em
-
-
 SCRIPT = 0.74
-
-
 DIGIT = 0.5
-
-
 OPERATOR = 1.23
-
-
 SIGN = 0.78
-
-
 RELATION = 1.34
-
-
 COLUMN_GAP = 0.92
-
-
 BRACKETS = 1.2
-
-
 FRACTION_BAR = 0.25
-
-
 FRAME = 0.75
 
 

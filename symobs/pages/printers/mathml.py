@@ -58,25 +58,13 @@ if TYPE_CHECKING:
 
 
 _SPACED = f"{TIMES}{THIN}"
-
-
 #: In running text (in em, or digits): what still goes under a fraction bar, into a matrix, into an unbroken number.
 _NARROW, _WIDE = 3.0, 12.0
-
-
 _LONG_NUMBER, _DIGITS = 16, 5
-
-
 _NUMBER = re.compile(r"(?:<msup>)?<mn>")
-
-
 _FRACTION_OF_NUMBERS = re.compile(r"<mfrac><mn>\d+</mn><mn>\d+</mn></mfrac>")
-
-
 #: A display up to this many times as wide as its line is not thought of as too wide: widths are estimates.
 _EXCESS = 1.05
-
-
 _SIZES = ("1.2em", "1.8em", "2.4em", "3em")
 
 

@@ -33,11 +33,7 @@ if TYPE_CHECKING:
 
 #: The most minors of one order that are looked at, and how many of the shortest are tried before all are.
 _MINORS = 100
-
-
 _FEW = (4, 12)
-
-
 #: So many terms a product may have that is looked for in an ideal.
 _MOST_TERMS = 2000
 

@@ -150,8 +150,6 @@ def _differentiated(formula: Formula) -> frozenset[str]:
 
 #: A condition of stability is all but zero where it is so much smaller than at the points around.
 _SMALLER = 16
-
-
 _NOWHERE = (Fraction(0), Fraction(0))
 
 
@@ -224,15 +222,9 @@ def _number(value: Scalar, axes: Sequence[str], place: Sequence[Fraction]) -> Fr
 
 #: Parts of a window: what is near a curve, and what the middle of a drawn segment may lie off its curve.
 _NEAR, _BETWEEN = Fraction(1, 500), Fraction(1, 50)
-
-
 #: How many places in a row are asked for all over a window and beside a curve, and how far beside it.
 _PLACES, _ASKED, _BESIDE = 7, 8, Fraction(1, 10_000)
-
-
 _ON_SEGMENT = (Fraction(2, 7), Fraction(5, 9), Fraction(3, 4))
-
-
 _ALONG = (Fraction(1, 10), Fraction(1, 2), Fraction(9, 10))
 
 

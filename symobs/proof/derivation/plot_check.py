@@ -251,16 +251,10 @@ def _is_labelled(end: End, near: Fraction, numbers: dict[str, Scalar]) -> bool:
 
 #: Parts of the window: how far a point may lie from what it stands for, and a segment from what it passes between.
 _OFF, _BETWEEN = Fraction(1, 500), Fraction(1, 100)
-
-
 #: The bits of a response, by how much of them rounding at its worst may be wrong, and the bits that are kept until it is not.
 _BITS, _OFF_BY, _KEPT = 72, 1 << 8, (192, 512, 1024, 2048, 4096)
-
-
 #: The series is that of a matrix of norm 2⁻¹⁶ or less, so that each term brings 16 bits.
 _SMALL = 16
-
-
 #: A mode may turn by so much between two instants, less than π: one that turns by 2π more would look the same.
 _TURN, _SQUARINGS = 3, 6
 

@@ -191,8 +191,6 @@ def _lowest(polynomial: Scalar, epsilon: str) -> int:
 
 #: The coefficients of a polynomial, highest power first; none for zero.
 Coefficients: TypeAlias = "list[Fraction]"
-
-
 _VARIABLE = "s"
 
 

@@ -65,15 +65,9 @@ def from_contradiction(value: Scalar) -> Combined:
 
 #: A monomial as names with exponents, and a polynomial as its coefficients.
 Monomial: TypeAlias = tuple[tuple[str, int], ...]
-
-
 Terms: TypeAlias = dict[Monomial, int]
-
-
 #: The monomial 1.
 NOTHING: Monomial = ()
-
-
 #: Larger programs are not tried.
 _ROWS, _COLUMNS, _PIVOTS = 60, 160, 40
 
@@ -117,8 +111,6 @@ def combination(goal: Scalar, known: Sequence[Scalar], signs: Mapping[str, str])
 
 #: The row that says the strict coefficients add up to 1.
 _SCALE: Monomial = (("", 1),)
-
-
 #: The place of the right side in a row.
 _RIGHT = -1
 
@@ -289,16 +281,10 @@ def _eliminated(line: Mapping[int, int], pivot: Mapping[int, int], place: int) -
 
 #: How many views are tried for one goal, how many ways on from each, and how large a polynomial may become.
 _VIEWS, _WAYS, _TERMS = 24, 3, 400
-
-
 #: A known value of more terms is left aside.
 _SOLVED = 60
-
-
 #: How often a combination is looked for.
 _PROGRAMS = 3
-
-
 _DOWN = {"negative", "nonpositive", "zero"}
 
 

@@ -157,8 +157,6 @@ def _split_one(state: InequalitySystem, value: Scalar, signs: Mapping[str, str])
 
 #: Coefficients and conditions of more terms are not held against each other.
 _COMPARED_UP_TO = 12
-
-
 #: A condition of more terms is not solved.
 _SOLVED_UP_TO = 200
 
@@ -202,12 +200,8 @@ def root_of_square(positive: Scalar) -> Scalar | None:
 
 
 Signs: TypeAlias = "Mapping[str, str]"
-
-
 #: Values of more terms keep their order; to write them out would take longer than it is worth.
 _TOLD_APART = 100
-
-
 _DOWN = {"negative", "nonpositive", "zero"}
 
 

@@ -183,8 +183,6 @@ def _without_the_superfluous(
 
 #: The plane is divided where the degrees of all discriminants and resultants sum to no more than this.
 LARGEST_PROJECTION = 170
-
-
 #: With the conditions of a short list besides, it may be this much larger.
 _LARGER = 3
 

@@ -54,47 +54,19 @@ if TYPE_CHECKING:
 
 #: The kinds of keyword a task may have.  Their names in signatures are the schema, as text or as annotations.
 Poles: TypeAlias = Annotated[Any, "Poles"]
-
-
 PolynomialText: TypeAlias = Annotated[Any, "PolynomialText"]
-
-
 TransferFunctionText: TypeAlias = Annotated[Any, "TransferFunctionText"]
-
-
 GainText: TypeAlias = Annotated[Any, "GainText"]
-
-
 MatrixText: TypeAlias = Annotated[Any, "MatrixText"]
-
-
 IntervalText: TypeAlias = Annotated[Any, "IntervalText"]
-
-
 SignalText: TypeAlias = Annotated[Any, "SignalText"]
-
-
 Name: TypeAlias = Annotated[str, "Name"]
-
-
 Horizon: TypeAlias = Annotated[Any, "Horizon"]
-
-
 TimeFunctions: TypeAlias = Annotated[Any, "TimeFunctions"]
-
-
 Intensity: TypeAlias = Annotated[Any, "Intensity"]
-
-
 Sign: TypeAlias = Annotated[Any, "Sign"]
-
-
 Entries: TypeAlias = Annotated[Any, "Entries"]
-
-
 Quantity: TypeAlias = Annotated[Any, "Quantity"]
-
-
 Names: TypeAlias = Annotated[Any, "Names"]
 
 

@@ -142,12 +142,8 @@ def set_anew(outer: Environment, inner: Environment) -> tuple[str, ...]:
 
 #: A polynomial of more terms is not written out among words.
 WRITTEN_UP_TO = 200
-
-
 #: A row of a matrix that is longer than this, written in one line, does not fit beside others.
 _WIDEST = 80
-
-
 #: More decimals of the data are not told as fractions.
 _DECIMALS = 4
 
@@ -182,7 +178,7 @@ def given(
         if disturbed is not None:
             page.set("E_d", disturbed)
             rate = rate + _as_given(page, disturbed) @ page[by]
-        relations.append(relation(page["x"].derivative, rate))
+        relations.append(page.line("x' = {rate}", rate=rate))
         page.environment = page.environment.extended_by(dynamics={"x": rate.formula})
         if m.has_output:
             page.set("C", m.C)
@@ -228,18 +224,17 @@ def _say_decimals(page: Builder) -> None:
 
 def _hold_to_letters(page: Builder, by: str) -> None:
     """Bind what is displayed to the letters: ẋ = A x + B u, y = C x + D u, and P to its realisation."""
-    m, x, u = page.plant.matrices, page["x"], page["u"]
-    rate = page["A"] @ x + page["B"] @ u if m.has_input else page["A"] @ x
+    m, x = page.plant.matrices, page["x"]
+    rate = page["A x + B u"] if m.has_input else page["A x"]
     if page.defines("E_d"):
-        rate = rate + page["E_d"] @ page[by]
+        rate = page(f"{{rate}} + E_d {by}", rate=rate)
     facts = [relation(x.derivative, rate)]
     if m.has_output:
-        output = page["C"] @ x + page["D"] @ u if m.has_feedthrough else page["C"] @ x
+        output = page["C x + D u"] if m.has_feedthrough else page["C x"]
         facts.append(relation(page["y"], output))
     if page.plant.origin is not None:
-        resolvent = page["A"].pencil.inverse
-        response = page["C"] @ resolvent @ page["B"]
-        facts.append(relation(page["P"], response + page["D"] if m.has_feedthrough else response))
+        response = page["C pencil(A)^-1 B"]
+        facts.append(relation(page["P"], page["C pencil(A)^-1 B + D"] if m.has_feedthrough else response))
     page.conclude_silently(*facts)
 
 
@@ -306,7 +301,7 @@ def spread(page: Builder, value: Matrix) -> Term:
             data = entry if letters & entry.denominator.names else entry.substitute(nothing)
             added = entry - data
             is_shorter = not data.is_zero and len(f"{data}{added}") < len(str(entry))
-            line.append(page.value(data) + page.value(added) if is_shorter else page.value(entry))
+            line.append(page("{data} + {added}", data=data, added=added) if is_shorter else page.value(entry))
         rows.append(line)
     return block(rows)
 
@@ -375,15 +370,15 @@ HIDDEN = {"observability": ("N", "X"), "controllability": ("N_K", "X_K")}
 def hidden(page: Builder, is_observer: bool, letters: tuple[str, str] = ("N", "X")) -> tuple[Relation, ...]:  # noqa: FBT001
     """Return that the columns of N are a basis of an invariant subspace never seen (never moved): CN = 0, AN = NX."""
     N, X = (page[name] for name in letters)
-    A, row = (page["A"], page["C"]) if is_observer else (page["A"].T, page["B"].T)
+    A, row = (page["A"], page["C"]) if is_observer else (page["A.T"], page["B.T"])
     count = N.value.shape[1]
     zero = Matrix.zeros(row.value.shape[0], count)
     return relation(row @ N, zero), relation(A @ N, N @ X), relation(N.apply("rank"), count)
 
 
-def hidden_polynomial(page: Builder, order: int, name: str = "X") -> Term:
+def hidden_polynomial(page: Builder, name: str = "X") -> Term:
     """Return det(sI − X): the polynomial of the hidden modes."""
-    return (page.s @ page.identity(order) - page[name]).apply("det")
+    return page[f"det(s I - {name})"]
 
 
 def say_stability(page: Builder, about: Term) -> None:

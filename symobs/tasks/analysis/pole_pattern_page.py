@@ -50,20 +50,23 @@ def _say_pair(
 ) -> None:
     """Write s² + 2 ζ ω₀ s + ω₀² where ζ is given, (s + σ)² + ω² where σ follows from the settling time."""
     _, twice, square = pattern.polynomial.coefficients(pattern.variable)
-    sigma, s = twice / 2, page.s
+    sigma = twice / 2
     if "damping" in values:
         damping = page.value(values["damping"])
         frequency = page.value(values.get("natural_frequency", sigma / values["damping"]))
-        pair = s**2 + page.value(2) @ damping @ frequency @ s + frequency**2
+        pair = page("s^2 + 2 {damping} {frequency} s", damping=damping, frequency=frequency) + frequency**2
         if "natural_frequency" in values:
             page.conclude("pattern_damping", damping=damping, frequency=frequency, pair=written(pair))
         else:
             page.conclude("pattern_damped", pair=written(pair))
     if "settling_time" in values:
-        pair = (s + page.value(sigma)) ** 2 + page.value(square - sigma**2)
+        pair = page("(s + {sigma})^2", sigma=sigma) + page.value(square - sigma**2)
         decayed = relation(function("exp", Scalar.of(-TIME_CONSTANTS)), "<=", Scalar.of(1) / 50)
         complex_and_stable = relation(sigma, ">", Scalar.of(0)), relation(square - sigma**2, ">", Scalar.of(0))
-        time = Evaluated((page.value(TIME_CONSTANTS) / page.value(sigma)).formula, Literal(values["settling_time"]))
+        time = Evaluated(
+            page("{count} / {sigma}", count=TIME_CONSTANTS, sigma=sigma).formula,
+            Literal(values["settling_time"]),
+        )
         page.conclude("pattern_settling", *complex_and_stable, time=time, pair=written(pair), bound=decayed)
     if "overshoot" in values:
         bound = relation(overshoot_of(pair_ratio(values["overshoot"])), "<=", values["overshoot"])
@@ -87,5 +90,5 @@ def _recursion(page: Builder, pattern: PolePattern) -> Term:
     if degree == 1:
         return page.value(pattern.polynomial)
     before = [page.value(bessel(degree - k, frequency, variable)) for k in (1, 2)]
-    second = page.s**2 if degree == 2 else page.s**2 @ before[1]
+    second = page["s^2"] if degree == 2 else page["s^2"] @ before[1]
     return page.value((2 * degree - 1) * frequency) @ before[0] + second

@@ -41,8 +41,6 @@ _T = TypeVar("_T")
 
 #: The keywords for which a flat list is a row; it is a column for the others.
 _ROWS = {"K", "reference"}
-
-
 #: What a task takes where a keyword of some kind is not given.
 _UNSAID = {"Horizon": "T"}
 
@@ -207,8 +205,6 @@ def _moved(value: Any, values: dict[str, Scalar]) -> Any:
 
 #: A value below this part of the sum of its terms may be nothing but rounding error.
 _ROUNDING = 2.0**-40
-
-
 #: In place of a case about which nothing is known.
 _UNDECIDED = object()
 

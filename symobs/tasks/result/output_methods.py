@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 
 _IMAGINARY = re.compile(r"\bI\b")
-
-
 _RELATIONS = {"!=": "!=", "=": "==", "==": "==", ">": ">", ">=": ">=", "<": "<", "<=": "<="}
 
 
@@ -185,7 +183,8 @@ class OutputMethods:
     @property
     def numbers(self) -> Mapping[str, Any]:
         """The fields as programs use them: certain digits, as rational numbers, stand for what has no closed form."""
-        return self.fields
+        found: Mapping[str, Any] = self.fields
+        return found
 
     @property
     def scope(self) -> dict[str, str]:
@@ -265,8 +264,6 @@ class OutputMethods:
 
 #: The significant digits of a page whose data are typed as decimals, and the most that can be asked for.
 DIGITS, MOST_DIGITS = 5, 40
-
-
 #: How the literature is told below a page.
 REFERENCES = ("none", "short", "full")
 

@@ -11,8 +11,8 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from symobs.applications.batch.sweep.columns import nearest_of
 from symobs.applications.batch.sweep.program import MARGINS_STATUS
-from symobs.applications.batch.sweep.table import nearest_of
 from symobs.exact import Scalar
 from symobs.formula.figures import SweepCurves, SweepMap
 from symobs.formula.tree import Letter, Literal

@@ -15,8 +15,9 @@ from symobs.applications.batch.engine import CHILD, Settings
 from symobs.applications.batch.jobs import USUAL_BUDGET, job, read_payload, solve_job
 from symobs.applications.batch.run import Batch, one_problem
 from symobs.applications.batch.store import work_folder
+from symobs.applications.batch.sweep.grid import Grid, read_grid
 from symobs.applications.batch.sweep.program import GAINS, MARGINS, MARGINS_STATUS, Program, names_used, with_values
-from symobs.applications.batch.sweep.table import Grid, check_target, read_grid, write_table
+from symobs.applications.batch.sweep.table import check_target, write_table
 from symobs.ground.child_processes.budget import Budget
 from symobs.ground.child_processes.child import Died, started
 from symobs.ground.errors import InputError, SymobsError, UsageError, raise_all
@@ -71,7 +72,7 @@ class Plan:
         with errors:
             self.columns = _chosen(bare.columns(), columns)
             if MARGINS_STATUS in self.columns:
-                from symobs.applications.batch.sweep.table import require_one_loop  # noqa: PLC0415 - only where asked for
+                from symobs.applications.batch.sweep.margins import require_one_loop  # noqa: PLC0415 - only where asked for
 
                 require_one_loop(bare)
         raise_all(errors.found)
@@ -215,7 +216,7 @@ class SweepTable:
 
     def to_arrow(self, *, decimals: bool = False) -> Any:
         """Return the table as an Arrow table, exact numbers as texts; needs the extra `table`."""
-        from symobs.applications.batch.sweep.table import arrow_table  # noqa: PLC0415 - needs pyarrow
+        from symobs.applications.batch.sweep.arrow import arrow_table  # noqa: PLC0415 - needs pyarrow
 
         return arrow_table(self, decimals=decimals)
 

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.export.grader import claims, values
+from symobs.applications.grader import claims, values
 from symobs.ground.errors import InputError, ProblemErrors
 
 if TYPE_CHECKING:

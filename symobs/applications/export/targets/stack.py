@@ -278,12 +278,8 @@ def place_of(each: ExerciseSet, part: str) -> int | None:
 
 #: The version of STACK whose format this is.
 VERSION = "2026010500"
-
-
 #: More variants of one question than a dashboard lists are several questions.
 MOST_VARIANTS = 100
-
-
 #: What Maxima and STACK mean by these names is not a parameter.
 _TAKEN = {"e", "i", "j", "pi", "inf", "minf", "und", "ind", "t", "s", "z"}
 

@@ -28,6 +28,8 @@ PHRASES: dict[str, str] = {
     "task": "Task.",
     "tasks": "Tasks.",
     "part": "({letter})",
+    "uses_K": "Use the gain $K$ of part ({part}).",
+    "uses_L": "Use the gain $L$ of part ({part}).",
     "plant_found": "The following parts are about the plant found in part ({letter}).",
     "exceptions_asked": "If the answer depends on the parameters, give the values for which it is no.",
     # What is said of a task without a sentence of its own: the first line of its description.
@@ -78,6 +80,8 @@ NAMING = (
     "tasks",
     "part",
     "plant_found",
+    "uses_K",
+    "uses_L",
     "asked",
 )
 

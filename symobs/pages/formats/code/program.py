@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
 
 _HOLD_NAMES = {"zoh": "zero-order hold", "tustin": "the bilinear map"}
-
-
 _WHERE_MISSING = "use observer, reduced_order_observer or compensator"
 
 

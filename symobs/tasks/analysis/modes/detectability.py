@@ -347,12 +347,12 @@ def _at_eigenvalues(page: Builder, result: HiddenStability) -> None:
         page.conclude(f"yes_{result.task}")
         return
     fixed_modes(page, result)
-    _hidden_modes(page, result, result.test.answer["kernel"].shape[1])
+    _hidden_modes(page, result)
 
 
-def _hidden_modes(page: Builder, result: HiddenStability, count: int) -> None:
+def _hidden_modes(page: Builder, result: HiddenStability) -> None:
     """Write the polynomial of the fixed modes and judge it."""
-    about = hidden_polynomial(page, count)
+    about = hidden_polynomial(page)
     page.conclude_silently(relation(page["N"], result.test.answer["kernel"]))
     page.equal(relation(about, result.answer["fixed_polynomial"]), say="fixed_polynomial")
     _judge(page, result, about)
@@ -412,7 +412,7 @@ def _beyond_or_marginal(page: Builder, result: HiddenStability, about: Term) -> 
         return
     mu = page.set("mu", annuls)
     zero = page.value(result.test.answer["restricted"] * 0)
-    image = page["X"].apply("mu_at")
+    image = page["mu_at(X)"]
     if result.hidden.verdict == "yes":
         if result.meetings:
             page.assume("apart_provided", *result.meetings)
@@ -453,7 +453,7 @@ def _generic(page: Builder, result: HiddenStability) -> None:
         page.set("N", result.test.answer["kernel"])
         page.set("X", result.test.answer["restricted"])
     show_hidden(page, result, "on_kernel")
-    _hidden_modes(page, result, hidden_ones)
+    _hidden_modes(page, result)
 
 
 def _cases(page: Builder, letter: str, result: HiddenStability) -> None:

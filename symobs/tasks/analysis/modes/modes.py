@@ -47,7 +47,7 @@ from symobs.tasks.analysis.strata.strata import (
     holds_where,
     systems_of,
 )
-from symobs.tasks.result import Case, Result, equality
+from symobs.tasks.result import Case, Result, equality, holds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -61,12 +61,8 @@ if TYPE_CHECKING:
 
 #: Up to this order a rank at an eigenvalue is proved by a minor there; with parameters up to the second.
 _MINORS, _MINORS_WITH_PARAMETERS = 6, 4
-
-
 #: With parameters an extension of higher degree is left to the polynomial of the fixed modes.
 _DEGREE_WITH_PARAMETERS = 2
-
-
 TESTS: dict[str, type[RankResult]] = {"observability": Observability, "controllability": Controllability}
 
 
@@ -276,7 +272,7 @@ class ModeResult(Result):
         order, X = self.plant.order, self.test.answer["restricted"]
         e = Environment(variable=self.plant.variable, values={"A": A, "X": X, "chi": self.answer["polynomial"]})
         chi = e["chi"]
-        yield equality(e["A"].pencil.apply("det"), chi, e)
+        yield holds(e, "det(pencil(A)) = chi")
         form = Factored(Scalar.of(1), tuple((part.factor, part.power) for part in self.spectrum))
         yield equality(chi, Term(formula_of_factored(form), e), e)
         counts = len(self.answer["ranks"]), len(self.answer["constancy"])
@@ -300,7 +296,7 @@ class ModeResult(Result):
                 return
             value, size = inner["X"].apply("phi_at"), hidden - degree * (order - found)
             if self.plant.is_stratum or not self.plant.relations:
-                yield equality(value.apply("rank"), size, inner, f"rank q(X) gives the rank where {where}")
+                yield holds(inner, "rank(phi_at(X)) = {size}", f"rank q(X) gives the rank where {where}", size=size)
             else:  # relations between functions of the parameters: not at each of their points, but in general
                 yield from self._general_rank_claims(value, size, f"q(X) where {where}")
             return
@@ -327,7 +323,7 @@ class ModeResult(Result):
             yield Claim(relation(minor, operator, 0), inner, f"a minor of M is not zero where {where}")
         if kernel.shape[1]:
             N = Term(Literal(kernel), inner)
-            yield equality(M @ N, Matrix.zeros(part.matrix.shape[0], kernel.shape[1]), inner, f"where {where}")
+            yield holds(inner, "M {N} = 0", f"where {where}", N=N)
             minor = Term(Literal(kernel.select(free, range(kernel.shape[1]))), inner).apply("det")
             yield Claim(relation(minor, operator, 0), inner, f"rank N = n - rank M where {where}")
 
@@ -399,10 +395,9 @@ class ModeResult(Result):
 def show_spectrum(page: Builder, result: ModeResult) -> None:
     """Write χ with its factors, and its roots."""
     plant, chi = page.plant, result.answer["polynomial"]
-    pencil = page["A"].pencil
     form = factored(chi, plant.variable)
     product = page.term(formula_of_factored(form))
-    members = [pencil.apply("det"), page.value(chi)]
+    members = [page["det(pencil(A))"], page.value(chi)]
     if len(form.factors) > 1 or form.factors[0][1] > 1:
         members.append(product)
     page.define("chi", *members, say="eigenvalue_polynomial", closing=False)
@@ -414,10 +409,10 @@ def show_spectrum(page: Builder, result: ModeResult) -> None:
 def pencil_of(page: Builder, result: ModeResult, value: Scalar | None = None) -> Term:
     """Return [A − λI; C], or [A − λI, B], as a formula."""
     eigenvalue = page.value(Scalar.symbol(EIGENVALUE) if value is None else value)
-    shifted = page["A"] - eigenvalue @ page.identity(page.plant.order)
+    shifted = page("A - {eigenvalue} I", eigenvalue=eigenvalue)
     if result.kind == "observability":
-        return block([[shifted], [page["C"]]])
-    return block([[shifted, page["B"]]])
+        return page("[{shifted}; C]", shifted=shifted)
+    return page("[{shifted}, B]", shifted=shifted)
 
 
 def at_eigenvalues(page: Builder, result: ModeResult, parts: Iterable[Eigenvalues]) -> bool:
@@ -441,7 +436,7 @@ def _at(page: Builder, result: ModeResult, part: Eigenvalues, rank: int, conditi
     unknown = page.value(Scalar.symbol(EIGENVALUE))
     pencil, matrix = pencil_of(page, result), part.matrix.T if dual else part.matrix
     at = relation(unknown, part.value) if len(part.roots) == 1 else relation(part.relation, 0)
-    ranks = relation(pencil.apply("rank"), page.value(matrix).apply("rank"), rank)
+    ranks = relation(pencil.apply("rank"), page("rank({matrix})", matrix=matrix), rank)
 
     def where(kept: list[Condition]) -> Relation | Conjunction:
         return Conjunction((at, *map(as_written, kept))) if kept else at
@@ -454,7 +449,7 @@ def _at(page: Builder, result: ModeResult, part: Eigenvalues, rank: int, conditi
     if part.matrix.names - {EIGENVALUE} and not shows([ranks], on_stratum(when, {}, page.environment)):
         return []  # it is shown by the minors of X − λI, and too long to be shown by those of the whole matrix
     steps: list[Step] = [Equal((ranks,))]
-    singular = (page["A"] - unknown @ page.identity(page.plant.order)).apply("det")
+    singular = page("det(A - {unknown} I)", unknown=unknown)
     steps.append(Conclude(None, (relation(pencil, matrix), relation(singular, 0))))
     kernel: Matrix = part.witness[2]  # type: ignore[index]
     shown = kernel.shape[1] if _are_independent(kernel, on_stratum(when, {}, page.environment)) else 0
@@ -507,10 +502,10 @@ def fixed_modes(page: Builder, result: ModeResult) -> None:
 def show_hidden(page: Builder, result: ModeResult, words: str) -> None:
     """Show N and X, which are established, and what makes the eigenvalues of X the fixed modes."""
     test = result.test
-    A = page["A"] if result.kind == "observability" else page["A"].T
+    A = page["A"] if result.kind == "observability" else page["A.T"]
     page.equal(
         relation(page["N"], test.answer["kernel"]),
-        relation(A @ page["N"], page["N"] @ page["X"]),
+        page.line("{A} N = N X", A=A),
         relation(page["X"], test.answer["restricted"]),
         say=f"{words}_{result.kind}",
     )

@@ -114,7 +114,7 @@ class PopovBelevitchHautus(ModeResult):
                 return
             page.conclude(f"pbh_no_{self.kind}")
             fixed_modes(page, self)
-            whole = hidden_polynomial(page, order - rank)
+            whole = hidden_polynomial(page)
             roots = roots_of(self.answer["fixed_polynomial"], self.plant.variable)
             page.conclude(f"modes_{self.kind}", modes=Roots(whole.formula, roots))
             page.steps += meeting_steps(page, self)

@@ -55,7 +55,7 @@ def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> bo
         return False
     if determinant is None:
         _outside_drops(page, [c.expression for c in result.holds_where if c.kind == "existence"])
-        rank = relation(page[letter].apply("rank"), result.answer["rank"])
+        rank = page.line(f"rank({letter}) = {{value}}", value=result.answer["rank"])
         is_said = result.verdict == "yes" or bool(page.environment.relations)
         is_full = is_said and fits(f"full_rank_{kind}", rank, page.environment)
         page.conclude(f"{'full' if is_full else 'generic'}_rank_{kind}", rank=rank)
@@ -64,7 +64,7 @@ def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> bo
     if determinant.size > WRITTEN_UP_TO:
         page.conclude(f"long_{kind}", count=str(determinant.numerator.size - 1))
         return False
-    det = page[letter].apply("det")
+    det = page[f"det({letter})"]
     shown = determinant_form(page, determinant)
     open_factors = vanishing_factors([determinant], signs)
     if not open_factors or not result.case_tree:
@@ -93,12 +93,12 @@ def _rank_case(page: Builder, letter: str, case: Case, kind: str) -> Step:
     if case.result is None or environment_on(page, conditions_of(case), case.substitution) is None:
         return undecided(page, case)
     result = cast("RankResult", case.result)
-    answer, matrix = result.answer, page[letter] if kind == "observability" else page[letter].T
+    answer, matrix = result.answer, page[letter] if kind == "observability" else page[f"{letter}.T"]
     steps: list[Step] = []
     if not answer["rank"]:
         steps.append(Conclude(sentence("case_zero", {}), (relation(page[letter], page[letter].value * 0),)))
     else:
-        rank = relation(page[letter].apply("rank"), answer["rank"])
+        rank = page.line(f"rank({letter}) = {{value}}", value=answer["rank"])
         steps.append(Conclude(sentence("case_rank", {"rank": rank})))
     N, vectors = answer["kernel"], answer["kernel"].shape[1]
     if answer["rank"] and vectors:
@@ -114,7 +114,7 @@ def repair(page: Builder, letter: str, result: RankResult, kind: str) -> list[St
     sets, order = result.repaired, page.plant.order
     if not 0 < len(sets) <= NAMED_SETS:
         return []
-    test, A = (page[letter], page["A"]) if kind == "observability" else (page[letter].T, page["A"].T)
+    test, A = (page[letter], page["A"]) if kind == "observability" else (page[f"{letter}.T"], page["A.T"])
     facts = []
     for numbers in sets:
         rows = page.value(unit_rows(order, tuple(number - 1 for number in numbers)))
@@ -134,7 +134,7 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
     _outside_drops(page, _distances(result))
     is_said = not result.case_tree or bool(page.environment.relations)
     tell_deficient(page, letter, result.answer["rank"], kind, everywhere=is_said)
-    matrix = page[letter] if kind == "observability" else page[letter].T
+    matrix = page[letter] if kind == "observability" else page[f"{letter}.T"]
     zero = Matrix.zeros(matrix.value.shape[0], 1)
     unseen = [relation(matrix @ page.value(vector), zero) for vector in result.kernel_vectors]
     page.equal(*unseen, say=f"kernel_{kind}" if len(unseen) == 1 else f"kernel_several_{kind}")
@@ -146,7 +146,7 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
     page.conclude(
         f"modes_{kind}",
         modes=Roots(
-            hidden_polynomial(page, len(result.kernel_vectors), letters[1]).formula,
+            hidden_polynomial(page, letters[1]).formula,
             roots_of(polynomial, page.plant.variable),
         ),
     )
@@ -154,7 +154,7 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
 
 def tell_deficient(page: Builder, letter: str, rank: int, kind: str, *, everywhere: bool = True) -> None:
     """Say that a rank is below the order, and whether it is this one for all parameters or for generic ones."""
-    found = relation(page[letter].apply("rank"), rank, "<", page.plant.order)
+    found = page.line(f"rank({letter}) = {{value}} < {{order}}", value=rank, order=page.plant.order)
     key = "no" if everywhere and fits(f"no_{kind}", found, page.environment) else "generic_low"
     page.conclude(f"{key}_{kind}", rank=found)
 

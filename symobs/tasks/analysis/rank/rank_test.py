@@ -56,10 +56,10 @@ from symobs.tasks.analysis.strata.strata import (
     stratum_claims,
     stratum_of,
 )
-from symobs.tasks.result import Case, Result, equality
+from symobs.tasks.result import Case, Result, equality, holds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.system import StateSpace
 
@@ -73,8 +73,6 @@ if TYPE_CHECKING:
 
 #: The most sets that are tried, and terms of the matrices; the minors of a set that are tried first, and the most.
 _SETS, _TERMS = 200, 400
-
-
 _MINORS = (60, 500)
 
 
@@ -195,16 +193,16 @@ def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | No
     """Yield structure, kernel and rank from above, invariance; the kernel's claims hold `here`, on a stratum."""
     O, N, X = found["matrix"], found["kernel"], found["restricted"]
     order = O.shape[1]
-    yield equality(e["O"], e["upper"], e, "the blocks are C, C*A, ..., C*A**(n - 1)")
+    yield holds(e, "O = upper", "the blocks are C, C*A, ..., C*A**(n - 1)")
     witnesses = len(found["rows"]), len(found["columns"])
     yield Claim(relation(found["rank"], *witnesses), e, "the minor has the order of the rank")
     beside = N.shape[1], len(found["free"]), *X.shape
     yield Claim(relation(order - found["rank"], *beside), e, "the kernel has the dimension n - rank")
     if N.shape[1]:
         e, count = here or e, range(N.shape[1])
-        yield equality(e["O"] @ e["N"], Matrix.zeros(O.shape[0], len(count)), e)
+        yield holds(e, "O N = 0")
         yield Claim(relation(determinant_term(N.select(found["free"], count), e), "!==", 0), e)
-        yield equality(e["A"] @ e["N"], e["N"] @ e["X"], e)
+        yield holds(e, "A N = N X")
 
 
 def rank_losses(found: Mapping[str, Any], signs: Mapping[str, str]) -> tuple[Scalar, ...]:
@@ -269,6 +267,21 @@ class RankResult(Result):
         return self.plant.simplified(matrix.determinant()) if square and not self.is_too_long else None
 
     @cached_property
+    def deciding_determinant(self) -> Scalar | None:
+        """That determinant; of a matrix in which all but n rows are multiples of those above them, that of these rows."""
+        matrix: Matrix = self.answer["matrix"]
+        order = matrix.shape[1]
+        if matrix.shape[0] == order or self.is_too_long:
+            return self.test_determinant
+        kept: list[int] = []
+        for index, row in enumerate(matrix.rows):
+            if any(row) and not any(_is_multiple(row, matrix.rows[other]) for other in kept):
+                kept.append(index)
+        if len(kept) != order:
+            return None
+        return self.plant.simplified(matrix.select(kept, range(order)).determinant())
+
+    @cached_property
     def is_too_long(self) -> bool:
         """Whether the minors have more terms than can be dealt with."""
         return determinant_terms(self.answer["matrix"].select(self.answer["rows"], range(self.plant.order))) > EXPANDED
@@ -294,7 +307,7 @@ class RankResult(Result):
             return "no"
         lost = [case for case in self.case_tree if case.result is not None and case.result.verdict == "no"]
         unknown = [case for case in self.case_tree if case.result is None]
-        if lost or (unknown and self.test_determinant is not None):
+        if lost or (unknown and self.deciding_determinant is not None):
             return "conditional"
         return "undecided" if unknown else "yes"
 
@@ -309,8 +322,9 @@ class RankResult(Result):
             return (*self.domain, *self.piece.conditions)
         if self.answer["rank"] < self.plant.order:
             return self.domain
-        if self._tree is None:  # the determinant is known, though not what is true where it vanishes
-            factors = () if self.test_determinant is None else self._region.vanishing(self.test_determinant)
+        if self._tree is None or (self._tree.undecided and self.deciding_determinant is not None):
+            # the determinant is known, though not what is true where it vanishes
+            factors = () if self.deciding_determinant is None else self._region.vanishing(self.deciding_determinant)
             return (*self.domain, *(Condition("existence", value) for value in factors))
         lower = [node.locus for node in self._tree.strata if node.rank < self.plant.order]
         lost = Node(self._region.whole, self.answer["rank"], (), below=maximal([*lower, *self._tree.undecided]))
@@ -364,6 +378,11 @@ class RankResult(Result):
         except (CertificateRejected, TooLarge):
             unknown = (factor for value in self.existence for factor in self._region.vanishing(value))
             cases += [Case((Condition("existence", factor, "=="),), {}, None) for factor in unknown]
+        cases += [case for case in found if case.result is None]
+        found = [case for case in found if case.result is not None]
+        if cases and self.deciding_determinant is not None:  # they lie where this vanishes
+            factors = self._region.vanishing(self.deciding_determinant)
+            cases = [Case((Condition("existence", factor, "=="),), {}, None) for factor in factors]
         return (*found, *cases), tuple(certificates)
 
     def _case(self, stratum: RankStratum) -> Case:
@@ -424,6 +443,13 @@ class RankResult(Result):
         """The basis of the kernel, vector by vector."""
         N: Matrix = self.answer["kernel"]
         return tuple(N.select(range(N.shape[0]), [j]) for j in range(N.shape[1]))
+
+
+def _is_multiple(row: Sequence[Scalar], other: Sequence[Scalar]) -> bool:
+    """Return whether a row is another one times a polynomial."""
+    first = next(index for index, entry in enumerate(other) if entry)
+    factor = row[first] / other[first]
+    return factor.denominator.is_constant and all(x == factor * y for x, y in zip(row, other, strict=True))
 
 
 def listed(sets: tuple[tuple[int, ...], ...] | None) -> list[list[int]] | None:

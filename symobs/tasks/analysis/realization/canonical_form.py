@@ -25,7 +25,7 @@ from symobs.exact import (
 )
 from symobs.exact.linear_algebra.modal_matrix import modal_matrix
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import block, identity
+from symobs.formula.tree.term import block
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Claim
@@ -37,7 +37,7 @@ from symobs.tasks.analysis.rank.observability import power_rows
 from symobs.tasks.analysis.rank.rank_page import square_test
 from symobs.tasks.analysis.realization.modal_form import modal_basis
 from symobs.tasks.analysis.strata.strata import carried, strata
-from symobs.tasks.result import Case, Result, choose, equality, method, task
+from symobs.tasks.result import Case, Result, choose, equality, holds, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -101,7 +101,7 @@ class CanonicalForm(Result):
         m, answer, n = self.plant.matrices, self.answer, self.plant.order
         chi = answer["polynomial"]
         e = Environment(variable=self.plant.variable, values={"A": m.A, "chi": chi})
-        yield equality(e["A"].pencil.apply("det"), e["chi"], e)
+        yield holds(e, "det(pencil(A)) = chi")
         if answer["T"] is None:
             rank = self.test.answer["rank"] if self.test is not None else n
             yield Claim(relation(rank, "<", n), e, "the pair does not have full rank")
@@ -114,11 +114,11 @@ class CanonicalForm(Result):
         values |= {"D": m.D, "D_bar": answer["D"]} if m.has_input and m.has_output else {}
         e = e.extended_by(values=values)
         T, S = e["T"], e["S"]
-        yield equality(T @ S, identity(n, e), e)
-        yield equality(e["A_bar"], T @ e["A"] @ S, e)
+        yield holds(e, "T S = I")
+        yield holds(e, "A_bar = T A S")
         for left, right in (("B_bar", T @ e["B"]), ("C_bar", e["C"] @ S), ("D_bar", e["D"])):
             if left in values:
-                yield equality(e[left], right, e)
+                yield holds(e, f"{left} = {{right}}", right=right)
         yield from self._form(e)
 
     def _form(self, e: Environment) -> Iterator[Claim]:
@@ -127,17 +127,17 @@ class CanonicalForm(Result):
         last = Matrix.unit(n, n - 1)
         if self.kind == "controllable":
             yield equality(A_bar, wanted, e, "A_bar has the coefficients of chi in its last row")
-            yield equality(e["B_bar"], last, e, "B_bar is the last unit vector")
+            yield holds(e, "B_bar = {last}", "B_bar is the last unit vector", last=last)
         elif self.kind == "observable":
             yield equality(A_bar, wanted.T, e, "A_bar has the coefficients of chi in its last column")
-            yield equality(e["C_bar"], last.T, e, "C_bar is the last unit row")
+            yield holds(e, "C_bar = {T}", "C_bar is the last unit row", T=last.T)
         else:
             blocks = modal_matrix(self.answer["blocks"], self.plant.variable)
             yield equality(A_bar, blocks, e, "A_bar consists of the blocks of the factors of chi")
             product = Scalar.of(1)
             for factor, length in self.answer["blocks"]:
                 product = product * factor**length
-            yield equality(e["chi"], product, e)
+            yield holds(e, "chi = {product}", product=product)
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
@@ -185,7 +185,7 @@ class CanonicalForm(Result):
         given(page)
         with page.section("canonical_form"):
             chi = factored(self.answer["polynomial"], self.plant.variable)
-            members = [page["A"].pencil.apply("det")]
+            members = [page["det(pencil(A))"]]
             members.append(page.value(self.answer["polynomial"]))
             if self.kind == "modal" and (len(chi.factors) > 1 or chi.factors[0][1] > 1):
                 members.append(page.term(formula_of_factored(chi)))
@@ -199,23 +199,22 @@ class CanonicalForm(Result):
             return
         m = self.plant.matrices
         if self.kind == "observable":
-            page.define("T", page.value(self._hankel) @ page["O"], say="last_column_observable", answer=True)
-            page.define("S", page["T"].inverse)
+            page.define("T", page("{hankel} O", hankel=self._hankel), say="last_column_observable", answer=True)
+            page.define("S", "T^-1")
         elif self.kind == "controllable":
-            page.define("S", page["Ctr"] @ page.value(self._hankel), say="last_row_controllable")
-            page.define("T", page["S"].inverse, answer=True)
+            page.define("S", page("Ctr {hankel}", hankel=self._hankel), say="last_row_controllable")
+            page.define("T", "S^-1", answer=True)
         else:
             page.define("S", page.value(self.answer["inverse"]), say="modal_basis")
             conditions = [c.expression for c in self.holds_where if c.kind == "existence"]
             if conditions:
                 page.assume("distinct_provided", *conditions)
-            page.define("T", page["S"].inverse, answer=True)
-        T, S = page["T"], page["S"]
-        page.define("A_bar", T @ page["A"] @ S, say="decomposed", answer=True)
+            page.define("T", "S^-1", answer=True)
+        page.define("A_bar", "T A S", say="decomposed", answer=True)
         if m.has_input:
-            page.define("B_bar", T @ page["B"], answer=True)
+            page.define("B_bar", "T B", answer=True)
         if m.has_output:
-            page.define("C_bar", page["C"] @ S, answer=True)
+            page.define("C_bar", "C S", answer=True)
 
     @property
     def _hankel(self) -> Matrix:

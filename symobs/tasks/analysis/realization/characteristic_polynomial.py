@@ -11,7 +11,7 @@ from symobs.formula.tree.term import Term
 from symobs.ground.dataclass import dataclass
 from symobs.stability.criteria.stability import stability
 from symobs.tasks.analysis.page_parts import formula_of_factored, given, say_stability
-from symobs.tasks.result import Result, choose, equality, method, task
+from symobs.tasks.result import Result, choose, holds, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -34,11 +34,10 @@ class CharacteristicPolynomial(Result):
         """Yield det(sI − A) = χ(s) = product of the factors."""
         values = {"A": self.plant.matrices.A, "chi": self.answer["polynomial"]}
         e = Environment(variable=self.plant.variable, values=values)
-        pencil = e["A"].pencil
         form: Factored = self.answer["factors"]
         product = Term(formula_of_factored(form), e)
-        yield equality(pencil.apply("det"), e["chi"], e)
-        yield equality(e["chi"], product, e)
+        yield holds(e, "det(pencil(A)) = chi")
+        yield holds(e, "chi = {product}", product=product)
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -58,8 +57,7 @@ class CharacteristicPolynomial(Result):
         given(page)
         polynomial: Scalar = self.answer["polynomial"]
         with page.section("characteristic_polynomial"):
-            pencil = page["A"].pencil
-            members = [pencil.apply("det"), pencil.as_value.apply("det"), page.value(polynomial)]
+            members = [page["det(pencil(A))"], page["det(#pencil(A))"], page.value(polynomial)]
             form: Factored = self.answer["factors"]
             if len(form.factors) > 1 or form.factors[0][1] > 1:
                 members.append(page.term(formula_of_factored(form)))

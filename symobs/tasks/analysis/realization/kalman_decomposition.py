@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Matrix, Scalar, modulo
 from symobs.formula.tree import Environment, Literal
-from symobs.formula.tree.term import Term, block, identity
+from symobs.formula.tree.term import Term, block
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
@@ -24,7 +24,7 @@ from symobs.tasks.analysis.page_parts import case_steps, factored_form, given, i
 from symobs.tasks.analysis.rank.observability import power_rows
 from symobs.tasks.analysis.realization.canonical_form import BLOCKS, basis, minor_of, transfer_matrix
 from symobs.tasks.analysis.strata.strata import strata
-from symobs.tasks.result import Case, Result, choose, equality, method, task
+from symobs.tasks.result import Case, Result, choose, equality, holds, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -94,15 +94,14 @@ class Decomposition(Result):
         names = {"A_bar": "A", "B_bar": "B", "C_bar": "C", "D_bar": "D", "T": "T", "S": "inverse"}
         values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D} | {name: answer[key] for name, key in names.items()}
         e = Environment(variable=self.plant.variable, values=values)
-        T, S = e["T"], e["S"]
-        yield equality(T @ S, identity(n, e), e)
-        yield equality(e["A_bar"], T @ e["A"] @ S, e)
+        yield holds(e, "T S = I")
+        yield holds(e, "A_bar = T A S")
         if m.has_input:
-            yield equality(e["B_bar"], T @ e["B"], e)
+            yield holds(e, "B_bar = T B")
         if m.has_output:
-            yield equality(e["C_bar"], e["C"] @ S, e)
+            yield holds(e, "C_bar = C S")
         if self._is_whole:
-            yield equality(e["D_bar"], e["D"], e)
+            yield holds(e, "D_bar = D")
         yield equality(Scalar.of(sum(self.dimensions)), n, e, "the parts make up the whole")
         yield equality(answer["minimal_order"], self.dimensions[0], e, "the order is that of the first part")
         for to, out in ZEROS:
@@ -147,14 +146,11 @@ class Decomposition(Result):
         A1 = self.answer["A"].select(first, first)
         B1, C1 = self.answer["B"].select(first, inputs), self.answer["C"].select(outputs, first)
         e = e.extended_by(values={"P": self.answer["transfer_function"], "A_co": A1, "B_co": B1, "C_co": C1})
-        P = e["P"]
-        whole = e["A"].pencil.inverse
-        yield equality(P, e["C"] @ whole @ e["B"] + e["D"], e)
+        yield holds(e, "P = C pencil(A)^-1 B + D")
         if first:
-            own = e["A_co"].pencil.inverse
-            yield equality(P, e["C_co"] @ own @ e["B_co"] + e["D"], e)
+            yield holds(e, "P = C_co pencil(A_co)^-1 B_co + D")
         else:
-            yield equality(P, e["D"], e)
+            yield holds(e, "P = D")
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
@@ -216,22 +212,21 @@ class Decomposition(Result):
         m = self.plant.matrices
         say = "basis_blocks" if self._is_whole else "basis_reached" if m.has_input else "basis_seen"
         page.define("S", page.value(self.answer["inverse"]), say=say, sizes=", ".join(map(str, self.parts.values())))
-        page.define("T", page["S"].inverse, say="", answer=True)
-        T, S = page["T"], page["S"]
+        page.define("T", "S^-1", say="", answer=True)
         sizes, inputs, outputs = self.dimensions, [self.plant.inputs], [self.plant.outputs]
         parts = {name: self.answer[name] for name in "ABC"}
         page.define(
             "A_bar",
-            T @ page["A"] @ S,
+            "T A S",
             in_blocks(page, parts["A"], sizes, sizes),
             say="decomposed",
             answer=True,
             closing=False,
         )
         if m.has_input:
-            page.define("B_bar", T @ page["B"], in_blocks(page, parts["B"], sizes, inputs), answer=True, closing=False)
+            page.define("B_bar", "T B", in_blocks(page, parts["B"], sizes, inputs), answer=True, closing=False)
         if m.has_output:
-            page.define("C_bar", page["C"] @ S, in_blocks(page, parts["C"], outputs, sizes), answer=True, closing=False)
+            page.define("C_bar", "C S", in_blocks(page, parts["C"], outputs, sizes), answer=True, closing=False)
         if self._is_whole:
             page.remark("zero_pattern")
         elif all(self.parts.values()):
@@ -244,8 +239,7 @@ class Decomposition(Result):
         P: Matrix = self.answer["transfer_function"]
         value = factored_form(page, P[0, 0]) if P.shape == (1, 1) else page.value(P)
         direct = page["D"] if self.plant.matrices.has_feedthrough else None
-        resolvent = page["A"].pencil.inverse
-        whole = page["C"] @ resolvent @ page["B"]
+        whole = page["C pencil(A)^-1 B"]
         whole = whole + direct if direct is not None else whole
         if not first:
             page.define("P", whole, value, say="nothing_remains", answer=True, closing=False)
@@ -254,7 +248,7 @@ class Decomposition(Result):
         page.set("A_co", self.answer["A"].select(first, first))
         page.set("B_co", self.answer["B"].select(first, m))
         page.set("C_co", self.answer["C"].select(p, first))
-        own = page["C_co"] @ page["A_co"].pencil.inverse @ page["B_co"]
+        own = page["C_co pencil(A_co)^-1 B_co"]
         own = own + direct if direct is not None else own
         page.define("P", whole, own, value, say="minimal_part", answer=True, closing=False)
 

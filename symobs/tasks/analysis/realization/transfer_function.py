@@ -31,7 +31,7 @@ from symobs.tasks.analysis.rank.rank_test import power_rows
 from symobs.tasks.analysis.realization.canonical_form import basis
 from symobs.tasks.analysis.realization.canonical_form import transfer_matrix as reduced
 from symobs.tasks.analysis.strata.loci import distance_from
-from symobs.tasks.result import Case, Result, choose, equality, method, task
+from symobs.tasks.result import Case, Result, choose, holds, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -57,7 +57,7 @@ class TransferFunction(Result):
         response = e["C"] @ resolvent @ e["B"]
         if m.has_feedthrough:
             response = response + e["D"]
-        yield equality(e["P"], response, e)
+        yield holds(e, "P = {response}", response=response)
         if self.plant.equations and self.order:
             yield self._smallest(e)
 
@@ -191,7 +191,7 @@ class TransferFunction(Result):
             characteristic = m.A.characteristic_polynomial(variable)
             adjugate = page.value(pencil.value.adjugate())
             one_over = page.term(Quotient(Literal(Scalar.of(1)), Literal(characteristic)))
-            stages = [C @ pencil.inverse @ B]
+            stages = [page["C pencil(A)^-1 B"]]
             if is_narrow(adjugate.value):
                 stages.append(one_over @ C.as_value @ adjugate @ B.as_value)
             if m.has_feedthrough:
@@ -219,14 +219,12 @@ class TransferFunction(Result):
 
     def _tell_roots(self, page: Builder) -> None:
         """Say the poles and the zeros."""
-        for part, key, of in zip(
-            self.polynomials, ("its_poles", "its_zeros"), (page["P"], page["P"].inverse), strict=True
-        ):
+        for part, key, of in zip(self.polynomials, ("its_poles", "its_zeros"), (page["P"], page["P^-1"]), strict=True):
             roots = roots_of(part, self.plant.variable) if part else ()
             if roots and all(root.is_closed for root in roots):
                 page.conclude(key, roots=Roots(of.formula, roots))
         if self.order and self.polynomials[1].degree(self.plant.variable) == 0:
-            page.conclude("no_zero", predicate("polynomial", page["P"].inverse))
+            page.conclude("no_zero", predicate("polynomial", page["P^-1"]))
 
     def _cases(self, page: Builder) -> None:
         """State the conditions, and the cases elsewhere."""
@@ -243,7 +241,7 @@ class TransferFunction(Result):
     def write_form(self, page: Builder) -> None:
         """Write the function in lowest terms, its poles and zeros, in a case."""
         P: Scalar | Matrix = self.answer["transfer_function"]
-        response = page["C"] @ page["A"].pencil.inverse @ page["B"]
+        response = page["C pencil(A)^-1 B"]
         if self.plant.matrices.has_feedthrough:
             response = response + page["D"]
         shown = page.value(P) if isinstance(P, Matrix) else factored_form(page, P)
@@ -298,12 +296,8 @@ def transfer_function(plant: StateSpace, *, method: Name = "auto") -> Result:
 
 #: Polynomials in the parameters that must not vanish together.
 System: TypeAlias = tuple[Scalar, ...]
-
-
 #: The most minors of 𝒪𝒞 that are looked at: a subset of them vanishes together on more than the true locus, never less.
 _MINORS = 40
-
-
 #: What the numbers of a combination of minors are called; no parameter's name begins so.
 _NUMBER = "_t"
 

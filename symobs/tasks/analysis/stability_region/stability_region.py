@@ -26,7 +26,7 @@ from symobs.stability.regions.region_check import are_parts, is_region
 from symobs.system import StateSpace, Symbols, read_scalar
 from symobs.system.conditions import Condition, sign_of
 from symobs.system.specification import read_gain, read_names
-from symobs.tasks.result import Case, Result, choose, equality, method, task
+from symobs.tasks.result import Case, Result, choose, holds, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -435,8 +435,8 @@ class StabilityRegion(Result):
         for other in moved[1:]:
             product = product @ other.apply("det")
         if plant.polynomial is not None:
-            return equality(e["chi"], plant.polynomial, e)
-        return equality(product, e["chi"], e)
+            return holds(e, "chi = {polynomial}", polynomial=plant.polynomial)
+        return holds(e, "{product} = chi", product=product)
 
     # -- what follows ------------------------------------------------------------------------------------------------
 

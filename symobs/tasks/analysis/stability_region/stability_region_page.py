@@ -87,10 +87,10 @@ def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
     for name, gain in (("K", question.K), ("L", question.L)):
         if gain is not None:
             page.define(name, gain, say="gain_open", closing=False)
-    pencil = page["A"].pencil
+    pencil = page["pencil(A)"]
     moved = {
-        "chi_K": pencil + page["B"] @ page["K"] if question.K is not None else None,
-        "chi_L": pencil + page["L"] @ page["C"] if question.L is not None else None,
+        "chi_K": page["pencil(A) + B K"] if question.K is not None else None,
+        "chi_L": page["pencil(A) + L C"] if question.L is not None else None,
     }
     used = {name: term for name, term in moved.items() if term is not None} or {"chi": pencil}
     for name, term in used.items():
@@ -98,7 +98,7 @@ def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
         page.define(name, term.apply("det"), term.as_value.apply("det"), own, say="polynomial_of_loop", closing=False)
     if len(used) == 1:
         return next(iter(used))
-    page.define("chi_cl", page["chi_K"] * page["chi_L"], say="polynomial_of_loop", closing=False)
+    page.define("chi_cl", "chi_K chi_L", say="polynomial_of_loop", closing=False)
     return "chi_cl"
 
 
@@ -126,7 +126,7 @@ def _moved(page: Builder, result: StabilityRegion, chi: str) -> str:
     boundary = result.question.boundary
     if boundary.is_usual:
         return chi
-    argument = page.s * boundary.radius if boundary.discrete else page.s - page.value(boundary.margin)
+    argument = page.s * boundary.radius if boundary.discrete else page("s - {margin}", margin=boundary.margin)
     value = boundary.moved(result.answer["polynomial"])
     say = "enlarged" if boundary.discrete else "moved_right"
     by = boundary.radius if boundary.discrete else boundary.margin
@@ -142,7 +142,7 @@ def _table(page: Builder, result: StabilityRegion, chi: str) -> None:
         return
     if result.critical.written[0].is_zero:  # 1 is a root, which the map carries to infinity: no table shows it
         page.remark("root_on_circle")
-        page.equal(relation(page.value(1).apply(f"{chi}_at"), 0))
+        page.equal(relation(page["1"].apply(f"{chi}_at"), 0))
         return
     taken = result.plant.symbols.signs.keys() | result.answer["polynomial"].names
     name_of_w = next((name for name in ("w", "v") if name not in taken), None)
@@ -195,7 +195,7 @@ def _crossing(page: Builder, result: StabilityRegion, chi: str) -> None:
     hurwitz = hurwitz_matrix(critical.written).select(range(last), range(last))
     determinant = hurwitz.determinant()
     if 1 < last <= WRITTEN_ORDER:
-        members = [page.value(hurwitz).apply("det"), determinant_form(page, determinant)]
+        members = [page("det({hurwitz})", hurwitz=hurwitz), determinant_form(page, determinant)]
     else:
         members = [determinant_form(page, determinant)]
     page.define(f"Delta_{last}", *members, closing=False)

@@ -23,7 +23,7 @@ from symobs.exact.core.generators import (
 )
 from symobs.exact.time_functions.matrix_exponential import OpenBranch
 from symobs.formula.tree import Conjunction, Environment, Literal
-from symobs.formula.tree.term import Term, letter
+from symobs.formula.tree.term import Term
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation import CaseStep
@@ -44,8 +44,6 @@ Signs = dict[Scalar, str]
 _MOST_BRANCHES = 4
 #: What is said of a mode whose discriminant is negative or positive.
 _BRANCHES = {"<": "branch_under", ">": "branch_over"}
-
-
 #: The signs that a value of a sign cannot have.
 _EXCLUDES = {"negative": {"positive", "nonnegative", "zero"}, "positive": {"negative", "nonpositive", "zero"}}
 
@@ -323,7 +321,7 @@ def from_zero(names: Iterable[str], e: Environment) -> Iterator[Claim]:
         if name in e.values:
             value = e.values[name]
             start = Matrix.zeros(*value.shape) if isinstance(value, Matrix) else Scalar.of(0)
-            yield Claim(relation(letter(name, e).at("t", 0), start), e)
+            yield holds(e, f"{name}(t = 0) = {{start}}", start=start)
 
 
 def time_environment(plant: StateSpace, values: Mapping[str, Scalar | Matrix], at: Scalar | None = None) -> Environment:

@@ -45,6 +45,7 @@ from symobs.tasks.analysis.strata.strata import distances, systems_of
 from symobs.tasks.analysis.time_response.damping_cases import (
     DampingCases,
     Signs,
+    exponential_claims,
     from_zero,
     inside_case,
     rate_of,
@@ -74,7 +75,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_polynomial,
     tell_question,
 )
-from symobs.tasks.result import Case, Result, choose, method, page_of, task
+from symobs.tasks.result import Case, Result, choose, holds, method, page_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -86,12 +87,8 @@ if TYPE_CHECKING:
 
 
 KINDS_OF = ("observability", "controllability")
-
-
 #: Determinants of entries with more terms than this together are left out.
 _MOST_TERMS = 60
-
-
 #: Up to this order there is always one.
 _ALWAYS_WITH_DETERMINANT = 2
 
@@ -228,7 +225,7 @@ class Gramian(DampingCases):
         total = c.T @ c
         for k in range(1, self.plant.order):
             total = total + (a.T) ** k @ c.T @ c @ a**k
-        yield Claim(relation(m, total), plain)
+        yield holds(plain, "M = {total}", total=total)
         kernel: Matrix = found["kernel"]
         if kernel.shape[1] and pair == (A, C):
             zero = Matrix.zeros(*kernel.shape)
@@ -262,36 +259,35 @@ class Gramian(DampingCases):
             reject("an integral over all time of what does not decay is none")
 
     def _about_gramian(self, e: Any) -> Iterator[Claim]:
-        W, A, C = letter("W", e), letter("A", e), letter("C", e)
+        A, C = letter("A", e), letter("C", e)
         horizon = self.answer["horizon"]
         if "exponential" in self.answer:
             Phi = letter("exp_At", e)
-            yield Claim(relation(rate_of(Phi), A @ Phi), e)
-            yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e)
+            yield from exponential_claims(e)
             integrand = Phi.T @ C.T @ C @ Phi
             yield from from_zero(["primitive"], e)
             whole = Term(since_start(integrand.formula, letter("primitive", e).formula, horizon), e)
-            yield Claim(relation(W, whole), e)
+            yield holds(e, "W = {whole}", whole=whole)
         elif "function" in self.answer:
             moving = letter("primitive", e)
             yield from from_zero(["primitive"], e)
             balance = relation(rate_of(moving), A.T @ moving + moving @ A + C.T @ C)
             yield Claim(balance, e)
-            yield Claim(relation(W, moving.at("t", horizon)), e, "W at the horizon")
+            yield holds(e, "W = {horizon}", "W at the horizon", horizon=moving.at("t", horizon))
         elif horizon == INFINITE and self.plant.is_discrete:
-            yield Claim(relation(A.T @ W @ A - W + C.T @ C, Matrix.zeros(*A.value.shape)), e)
+            yield holds(e, "A.T W A - W + C.T C = 0")
         elif horizon == INFINITE:
-            yield Claim(relation(A.T @ W + W @ A + C.T @ C, Matrix.zeros(*A.value.shape)), e)
+            yield holds(e, "A.T W + W A + C.T C = 0")
         else:
             total = C.T @ C
             for k in range(1, int(horizon.fraction())):
                 total = total + (A.T) ** k @ C.T @ C @ A**k
-            yield Claim(relation(W, total), e)
-        yield Claim(relation(W, W.T), e)
+            yield holds(e, "W = {total}", total=total)
+        yield holds(e, "W = W.T")
         if self.answer["determinant"] is not None:
-            yield Claim(relation(W.apply("det"), letter("determinant", e)), e)
+            yield holds(e, "det(W) = determinant")
         if "N" in e.values:
-            yield Claim(relation(W @ letter("N", e), Matrix.zeros(*e.values["N"].shape)), e)
+            yield holds(e, "W N = 0")
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -387,7 +383,7 @@ def _letters(result: Gramian, page: Builder) -> tuple[Term, Term]:
     """Return the terms A and C of the pair: (Aᵀ, Bᵀ) for controllability."""
     if result.answer["of"] == "observability":
         return page["A"], page["C"]
-    return page["A"].T, page["B"].T
+    return page["A.T"], page["B.T"]
 
 
 def _square(row: Term) -> Term:
@@ -434,7 +430,7 @@ def _write_branch(page: Builder, result: Gramian) -> None:
     if "function" in answer and "exponential" not in answer:
         moving = page.set("W_t", answer["function"])
         equation = relation(rate_of(moving), _transposed(A) @ moving + moving @ A + _square(C))
-        start = relation(moving.at("t", 0), Matrix.zeros(*answer["matrix"].shape))
+        start = page.line("W_t(t = 0) = 0")
         held = moving.at("t", answer["horizon"])
         page.define(
             "W",
@@ -460,21 +456,20 @@ def _write_branch(page: Builder, result: Gramian) -> None:
     is_dual = answer["of"] == "controllability"
     shown = answer["exponential"].T if is_dual else answer["exponential"]
     tell_exponential(page, found, shown)
-    Phi = page["exp_At"]
-    seen = Phi @ page["B"] if is_dual else page["C"] @ Phi
+    seen = page["exp_At B"] if is_dual else page["C exp_At"]
     page.equal(relation(seen, seen.as_value), say="input_through_exponential" if is_dual else "output_of_exponential")
-    integrand = seen @ page["B"].T @ Phi.T if is_dual else Phi.T @ page["C"].T @ seen
+    integrand = page("{seen} B.T exp_At.T", seen=seen) if is_dual else page("exp_At.T C.T {seen}", seen=seen)
     whole = page.term(since_start(integrand.formula, Literal(answer["function"]), answer["horizon"]))
     W: Matrix = answer["matrix"]
     if page.defines("P_l") and not is_dual and result.plant.admits(page["P_l"].value):
-        over = page.set("Phi_T", substitute(shown, {"t": answer["horizon"]}))
+        page.set("Phi_T", substitute(shown, {"t": answer["horizon"]}))
         page.set("W", W)
-        page.equal(relation(page["W"], whole, page["P_l"] - over.T @ page["P_l"] @ over), say="gramian_by_lyapunov")
+        page.equal(page.line("W = {whole} = P_l - Phi_T.T P_l Phi_T", whole=whole), say="gramian_by_lyapunov")
         page.equal(relation(page["W"], W), say="gramian_in_case", answer=True)
     else:
         page.define("W", whole, W, say="gramian_integral", answer=True, closing=False)
     if answer["determinant"] is not None:
-        page.equal(relation(page["W"].apply("det"), answer["determinant"]), say="gramian_determinant")
+        page.equal(page.line("det(W) = {determinant}", determinant=answer["determinant"]), say="gramian_determinant")
 
 
 def _tell_infinite(result: Gramian, page: Builder, A: Term, C: Term) -> None:
@@ -502,7 +497,7 @@ def _tell_infinite(result: Gramian, page: Builder, A: Term, C: Term) -> None:
     else:
         page.conclude("lyapunov_alone", equation=equation)
     page.equal(relation(W, answer["matrix"]), answer=True)
-    page.equal(relation(W.apply("det"), answer["determinant"]), say="gramian_determinant")
+    page.equal(page.line("det(W) = {determinant}", determinant=answer["determinant"]), say="gramian_determinant")
 
 
 def define_seen(result: Gramian, page: Builder) -> Term:
@@ -513,8 +508,8 @@ def define_seen(result: Gramian, page: Builder) -> Term:
         return page["chi"]
     letters = HIDDEN[of]
     page.set(letters[0], kernel)
-    X = page.set(letters[1], result.answer["rank"]["restricted"])
-    seen = page.term(Quotient(page["chi"].formula, hidden_polynomial(page, X.value.shape[0], letters[1]).formula))
+    page.set(letters[1], result.answer["rank"]["restricted"])
+    seen = page.term(Quotient(page["chi"].formula, hidden_polynomial(page, letters[1]).formula))
     shown = relation(seen, result.answer["seen"]), relation(page[letters[0]], kernel)
     page.equal(*shown, say=f"part_{of}")
     return seen
@@ -548,7 +543,7 @@ def _tell_kernel_over_steps(result: Gramian, page: Builder) -> None:
             f"steps_nonsingular_{of}", "W", result, page, known=result.further_zeros if result.case_tree else ()
         )
         return
-    page.equal(relation(W.apply("det"), 0), say="gramian_determinant")
+    page.equal("det(W) = 0", say="gramian_determinant")
     v = page.set("N" if kernel.shape[1] > 1 else "v", kernel)
     page.equal(relation(v, kernel), relation(W @ v, kernel * 0), say=f"steps_kernel_{of}")
 
@@ -556,7 +551,7 @@ def _tell_kernel_over_steps(result: Gramian, page: Builder) -> None:
 def _tell_nonsingular(key: str, name: str, result: Gramian, page: Builder, known: tuple[Scalar, ...] = ()) -> None:
     """Write that a matrix has a nonzero determinant, as a case unless its factors are known not to vanish."""
     value = page[name].value.determinant()
-    stated = relation(page[name].apply("det"), value)
+    stated = page.line(f"det({name}) = {{value}}", value=value)
     says = Conclude(sentence(key, {"determinant": stated}), (relation(value, "!=", 0),))
     factors = vanishing_factors([value], result.plant.symbols.signs)
     apart = Conjunction(tuple(relation(factor, "!=", 0) for factor in factors))
@@ -581,7 +576,7 @@ def _tell_kernel(result: Gramian, page: Builder) -> None:
     nothing = Matrix.zeros(*kernel.shape)
     page.equal(relation(v, v.value), say="kernel_shared")
     if page.defines("exp_At"):
-        unseen = relation(page["C"] @ page["exp_At"] @ v, zero)  # what it says is shown
+        unseen = page.line("C exp_At {v} = {zero}", v=v, zero=zero)  # what it says is shown
         page.equal(unseen, say="kernel_unseen_several" if several else "kernel_unseen")
     shown = [relation(page["W"] @ v, nothing)] if page.defines("W") else []
     say = "kernel_of_gramian" if page.defines("exp_At") else "kernel_annihilated"

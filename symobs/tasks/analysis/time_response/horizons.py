@@ -26,11 +26,7 @@ if TYPE_CHECKING:
 
 
 INFINITE = "inf"
-
-
 _MOST_STEPS = 60
-
-
 #: Lyapunov's equation is solved for up to this many states, without and with parameters.
 MOST_STATES, MOST_WITH_PARAMETERS = 12, 4
 

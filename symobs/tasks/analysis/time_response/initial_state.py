@@ -24,7 +24,7 @@ from symobs.exact.time_functions.quasipolynomial import (
 )
 from symobs.formula.tree import Environment, Evaluated, Literal
 from symobs.formula.tree.calculus import since_start
-from symobs.formula.tree.term import Term, block, identity, letter
+from symobs.formula.tree.term import Term, block, letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.proof.certificate.claims import Claim
@@ -32,7 +32,13 @@ from symobs.proof.derivation.builder import relation
 from symobs.system.conditions import Condition, never_zero, vanishing_factors
 from symobs.system.specification import parse_in_steps
 from symobs.tasks.analysis.rank.rank_test import rank_answer
-from symobs.tasks.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
+from symobs.tasks.analysis.time_response.damping_cases import (
+    Signs,
+    exponential_claims,
+    from_zero,
+    rate_of,
+    time_environment,
+)
 from symobs.tasks.analysis.time_response.horizons import (
     INFINITE,
     OfTheInitialState,
@@ -49,7 +55,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_polynomial,
     tell_question,
 )
-from symobs.tasks.result import Case, Result, choose, method, page_of, task
+from symobs.tasks.result import Case, Result, choose, holds, method, page_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -185,22 +191,21 @@ class InitialState(OfTheInitialState):
         yield from self.observability_claims()
 
     def _about_motion(self, e: Environment) -> Iterator[Claim]:
-        A, Phi, free = letter("A", e), letter("exp_At", e), letter("y_t", e)
-        yield Claim(relation(rate_of(Phi), A @ Phi), e)
-        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e)
+        free = letter("y_t", e)
+        yield from exponential_claims(e)
         if "x_f" in e.values:
             x_f, u = letter("x_f", e), letter("u_t", e)
-            yield Claim(relation(rate_of(x_f), A @ x_f + letter("B", e) @ u), e)
-            yield Claim(relation(x_f.at("t", 0), Matrix.zeros(self.plant.order, 1)), e)
+            yield holds(e, "{rate} = A x_f + B u_t", rate=rate_of(e["x_f"]))
+            yield holds(e, "x_f(t = 0) = 0")
             free = free - letter("C", e) @ x_f
             if self.plant.matrices.has_feedthrough:
                 free = free - letter("D", e) @ u
-        yield Claim(relation(letter("y_0", e), free), e, "what the input adds is taken away")
+        yield holds(e, "y_0 = {free}", "what the input adds is taken away", free=free)
 
     def _about_state(self, e: Environment) -> Iterator[Claim]:
-        seen, free = letter("C", e) @ letter("exp_At", e), letter("y_0", e)
+        free = letter("y_0", e)
         if "x_0" in e.values:
-            yield Claim(relation(free, seen @ letter("x_0", e)), e)
+            yield holds(e, "{free} = C exp_At x_0", free=free)
             if self.answer["horizon"] != INFINITE:
                 yield from from_zero(["W_t", "r_t"], e)
                 yield self._moments(e)
@@ -209,14 +214,13 @@ class InitialState(OfTheInitialState):
         for _ in range(self.plant.order):
             at_zero.append(free.at("t", 0))
             free = rate_of(free)
-        start, O = block([[part] for part in at_zero]), letter("O", e)
+        start = block([[part] for part in at_zero])
         if "candidate" in e.values:
-            state = letter("candidate", e)
-            yield Claim(relation(O @ state, start), e, "the candidate follows from the derivatives at 0")
-            yield Claim(relation(letter("y_0", e), "!==", seen @ state), e, "its output is not the one measured")
+            yield holds(e, "O candidate = {start}", "the candidate follows from the derivatives at 0", start=start)
+            yield holds(e, "y_0 !== C exp_At candidate", "its output is not the one measured")
             return
         row = Term(Literal(self.answer["row"]), e)
-        yield Claim(relation(row @ O, Matrix.zeros(1, self.plant.order)), e)
+        yield holds(e, "{row} O = 0", row=row)
         yield Claim(relation(row @ start, "!==", 0), e)
 
     def _moments(self, e: Environment) -> Claim:
@@ -391,17 +395,17 @@ def _entry(matrix: Matrix) -> Matrix | Scalar:
 
 def _tell_forced(result: InitialState, page: Builder) -> Term:
     """Write the motion from rest and ỹ; return ỹ."""
-    answer, A, C, y = result.answer, page["A"], page["C"], page["y_t"]
+    answer, y = result.answer, page["y_t"]
     if answer["input"] is None:
-        page.equal(relation(C @ page["exp_At"], (C @ page["exp_At"]).as_value), say="output_of_exponential")
+        page.equal("C exp_At = #", say="output_of_exponential")
         page.set("y_0", answer["output"])
         return y
-    x_f = page.define("x_f", answer["forced"], say="output_forced", closing=False)
-    moved = y - C @ x_f
+    page.define("x_f", answer["forced"], say="output_forced", closing=False)
+    moved = page["y_t - C x_f"]
     if result.plant.matrices.has_feedthrough:
-        moved = moved - page["D"] @ page["u_t"]
-    equation = relation(rate_of(x_f), A @ x_f + page["B"] @ page["u_t"])
-    start = relation(x_f.at("t", 0), Matrix.zeros(result.plant.order, 1))
+        moved = page("{moved} - D u_t", moved=moved)
+    equation = page.line("{rate} = A x_f + B u_t", rate=rate_of(page["x_f"]))
+    start = page.line("x_f(t = 0) = 0")
     page.conclude_silently(start)
     told: dict[str, Any] = {"say": "output_solution", "equation": equation}
     if answer["forced"].is_zero:
@@ -419,22 +423,20 @@ def _tell_moments(result: InitialState, page: Builder, free: Term) -> None:
         page.define("x_0", x0, say="initial_not_unique", answer=True, closing=False)
         N = answer["rank"]["kernel"]
         say = "initial_kernel" if N.shape[1] == 1 else "initial_kernel_several"
-        page.equal(relation(C @ Phi @ page["x_0"], free), say=say)
+        page.equal(page.line("C exp_At x_0 = {free}", free=free), say=say)
         for j in range(N.shape[1]):
             v = page.value(N.select(range(N.shape[0]), [j]))
             page.equal(relation(C @ Phi @ v, _entry(Matrix.zeros(C.value.shape[0], 1))))
         return
-    gramian = since_start((Phi.T @ C.T @ C @ Phi).formula, Literal(answer["gramian_function"]), horizon)
-    right = since_start((Phi.T @ C.T @ free).formula, Literal(answer["moment_function"]), horizon)
-    W = page.define("W", page.term(gramian), substitute(answer["gramian_function"], end), say="moments", closing=False)
-    r = page.define(
-        "r_0", page.term(right), substitute(answer["moment_function"], end), say="moments_right", closing=False
-    )
+    gramian = since_start(page["exp_At.T C.T C exp_At"].formula, Literal(answer["gramian_function"]), horizon)
+    right = since_start(page("exp_At.T C.T {free}", free=free).formula, Literal(answer["moment_function"]), horizon)
+    page.define("W", page.term(gramian), substitute(answer["gramian_function"], end), say="moments", closing=False)
+    page.define("r_0", page.term(right), substitute(answer["moment_function"], end), say="moments_right", closing=False)
     page.define("x_0", x0, say="initial_found", answer=True, closing=False)
     page.verified(
         "initial_checked",
-        moments=relation(W @ page["x_0"], r),
-        output=relation(C @ Phi @ page["x_0"], free),
+        moments=page.line("W x_0 = r_0"),
+        output=page.line("C exp_At x_0 = {free}", free=free),
     )
     _warn_of_short_horizons(result, page)
 
@@ -453,12 +455,12 @@ def _warn_of_short_horizons(result: InitialState, page: Builder) -> None:
     power, last = len(rates) - 1, rates[-1].at_zero
     if power == result.plant.order or not never_zero(last, page.plant.symbols.signs):
         return
-    C, Phi, end = page["C"], page["exp_At"], Scalar.symbol("T")
-    W = page.set("W_t", function)
-    start = relation(W.at("t", 0), Matrix.zeros(*function.shape))
-    page.conclude_silently(relation(rate_of(W), Phi.T @ C.T @ C @ Phi), start)
+    end = Scalar.symbol("T")
+    page.set("W_t", function)
+    start = page.line("W_t(t = 0) = 0")
+    page.conclude_silently(page.line("{rate} = exp_At.T C.T C exp_At", rate=rate_of(page["W_t"])), start)
     det = page.set("det_W", function.determinant())
-    page.conclude_silently(relation(det, W.apply("det")))
+    page.conclude_silently(page.line("{value} = det(W_t)", value=det))
     taylor = det.at("t", 0)
     for k in range(1, power + 1):
         det = rate_of(det)
@@ -469,21 +471,21 @@ def _warn_of_short_horizons(result: InitialState, page: Builder) -> None:
 
 def _tell_refusal(result: InitialState, page: Builder, free: Term) -> None:
     """Show the candidate and what its output leaves, or the row that refutes the data."""
-    answer, C, Phi = result.answer, page["C"], page["exp_At"]
+    answer = result.answer
     rates = [free]
     for _ in range(result.plant.order - 1):
         rates.append(rate_of(rates[-1]))
     if "candidate" in answer:
-        x0 = page.define("x_0", answer["candidate"], say="initial_candidate", closing=False, free=free)
-        rest = relation(free - C @ Phi @ x0, _entry(answer["rest"]), "!==", _entry(answer["rest"] * 0))
+        page.define("x_0", answer["candidate"], say="initial_candidate", closing=False, free=free)
+        rest = relation(free - page["C exp_At x_0"], _entry(answer["rest"]), "!==", _entry(answer["rest"] * 0))
         page.remark("initial_refused", rest=rest)
         return
     page.set("O", answer["rank"]["matrix"])
     w, start = page.set("v", answer["row"].T), page.set("r_0", answer["start"])
     at_zero = block([[rate.at("t", 0)] for rate in rates])
-    zero = relation(w.T @ page["O"], Matrix.zeros(1, result.plant.order))
+    zero = page.line("v.T O = 0")
     page.equal(relation(start, at_zero, answer["start"]), say="initial_start")
-    rest = relation(page["v"].T @ start, (page["v"].T @ start).as_value, "!==", 0)
+    rest = page.line("v.T r_0 = # !== 0")
     page.remark("initial_inconsistent", row=relation(w, answer["row"].T), zero=zero, rest=rest)
 
 
@@ -570,17 +572,19 @@ class InitialStateOfSamples(InitialState):
         values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D, "O": answer["stack"], "r_0": answer["right"]}
         values |= {} if answer["x0"] is None else {"x_0": answer["x0"]}
         e = Environment(variable=self.plant.variable, values=values, signs=self.plant.symbols.signs)
-        O, r = letter("O", e), letter("r_0", e)
-        yield Claim(relation(O, block([[row] for row in self.seen(e)])), e)
-        yield Claim(
-            relation(r, block([[sample] for sample in self.free(e)])), e, "r is the output without that of the input"
+        yield holds(e, "O = {value}", value=block([[row] for row in self.seen(e)]))
+        yield holds(
+            e,
+            "r_0 = {value}",
+            "r is the output without that of the input",
+            value=block([[sample] for sample in self.free(e)]),
         )
         if answer["x0"] is not None:
-            yield Claim(relation(O @ letter("x_0", e), r), e)
+            yield holds(e, "O x_0 = r_0")
         else:
             w = Term(Literal(answer["row"]), e)
-            yield Claim(relation(w @ O, Matrix.zeros(1, self.plant.order)), e)
-            yield Claim(relation(w @ r, "!==", 0), e)
+            yield holds(e, "{w} O = 0", w=w)
+            yield holds(e, "{w} r_0 !== 0", w=w)
         yield from self.observability_claims()
 
     def seen(self, e: Environment) -> list[Term]:
@@ -627,7 +631,7 @@ def write_initial_state_of_samples(page: Builder, result: InitialStateOfSamples)
 def _write_samples(page: Builder, result: InitialStateOfSamples) -> None:
     """Write one branch."""
     answer = result.answer
-    O = page.define("O", block([[row] for row in result.seen(page.environment)]), say="samples_stacked")
+    page.define("O", block([[row] for row in result.seen(page.environment)]), say="samples_stacked")
     samples = block([[sample] for sample in result.free(page.environment)])
     say = "samples_right" if answer["input"] is None else "samples_right_input"
     members = [samples] if answer["input"] is not None else []
@@ -635,11 +639,11 @@ def _write_samples(page: Builder, result: InitialStateOfSamples) -> None:
     page.conclude_silently(relation(r, samples))
     if answer["x0"] is None:
         w = page.set("v", answer["row"].T)
-        zero = relation(w.T @ O, Matrix.zeros(1, result.plant.order))
-        rest = relation(w.T @ r, (w.T @ r).as_value, "!==", 0)
+        zero = page.line("v.T O = 0")
+        rest = page.line("v.T r_0 = # !== 0")
         page.remark("samples_inconsistent", row=relation(w, answer["row"].T), zero=zero, rest=rest)
         return
-    x_0 = page.define(
+    page.define(
         "x_0",
         answer["x0"],
         say="samples_found" if result.is_unique else "initial_not_unique",
@@ -649,6 +653,6 @@ def _write_samples(page: Builder, result: InitialStateOfSamples) -> None:
     if not result.is_unique:
         N = answer["rank"]["kernel"]
         say = "samples_kernel" if N.shape[1] == 1 else "samples_kernel_several"
-        zeros = [relation(O @ page.value(_column(N, j)), Matrix.zeros(r.value.shape[0], 1)) for j in range(N.shape[1])]
+        zeros = [page.line("O {j} = 0", j=_column(N, j)) for j in range(N.shape[1])]
         page.equal(*zeros, say=say)
-    page.verified("samples_checked", check=relation(O @ x_0, r))
+    page.verified("samples_checked", check=page.line("O x_0 = r_0"))

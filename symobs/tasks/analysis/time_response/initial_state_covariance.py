@@ -25,16 +25,15 @@ from symobs.exact.time_functions.quasipolynomial import (
 )
 from symobs.formula.tree import Literal, Power
 from symobs.formula.tree.calculus import since_start
-from symobs.formula.tree.term import Term, identity, letter
+from symobs.formula.tree.term import Term, letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
-from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
 from symobs.system.conditions import Condition, never_zero, sign_of
 from symobs.system.specification import read_symmetric
 from symobs.tasks.analysis.rank.rank_page import tell_deficient
 from symobs.tasks.analysis.rank.rank_test import rank_answer
-from symobs.tasks.analysis.time_response.damping_cases import Signs, from_zero, rate_of, time_environment
+from symobs.tasks.analysis.time_response.damping_cases import Signs, exponential_claims, from_zero, time_environment
 from symobs.tasks.analysis.time_response.horizons import (
     INFINITE,
     OfTheInitialState,
@@ -51,12 +50,13 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_polynomial,
     tell_question,
 )
-from symobs.tasks.result import Result, choose, method, page_of, task
+from symobs.tasks.result import Result, choose, holds, method, page_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.formula.tree import Environment
+    from symobs.proof.certificate.claims import Claim
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Horizon, Intensity, Name
@@ -64,12 +64,8 @@ if TYPE_CHECKING:
 
 #: Orders for which the inverse of a Gramian in closed form is still readable.
 _MOST_STATES = 4
-
-
 #: Gramians of more terms than this are not inverted.
 _MOST_TERMS = 16
-
-
 END = Scalar.symbol("T")
 
 
@@ -145,26 +141,25 @@ class InitialStateCovariance(OfTheInitialState):
         return values | {f"{n} at T": substitute(v, {"t": horizon}) for n, v in list(values.items())}
 
     def _about_parts(self, e: Environment) -> Iterator[Claim]:
-        Phi, A, C, W, R = (letter(name, e) for name in ("exp_At", "A", "C", "W", "R"))
+        Phi, C, R = (letter(name, e) for name in ("exp_At", "C", "R"))
         horizon = self.answer["horizon"]
-        yield Claim(relation(rate_of(Phi), A @ Phi), e)
-        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e)
+        yield from exponential_claims(e)
         yield from from_zero(["W_t", "R_t", "Q_t"], e)
         whole = since_start((Phi.T @ C.T @ C @ Phi).formula, letter("W_t", e).formula, horizon)
-        yield Claim(relation(W, Term(whole, e)), e)
+        yield holds(e, "W = {whole}", whole=Term(whole, e))
         noise = since_start((Phi.T @ C.T @ R @ C @ Phi).formula, letter("R_t", e).formula, horizon)
-        yield Claim(relation(letter("S_R", e), Term(noise, e)), e)
-        yield Claim(relation(W @ letter("Cov_R", e) @ W, letter("S_R", e)), e)
+        yield holds(e, "S_R = {noise}", noise=Term(noise, e))
+        yield holds(e, "W Cov_R W = S_R")
         total = letter("Cov_R", e)
         if "V_t" in e.values:
-            V, Q, back = letter("V_t", e), letter("Q", e), letter("Phi_m", e)
-            yield Claim(relation(back @ Phi, identity(self.plant.order, e)), e)
-            yield Claim(relation(V, (W - letter("W_t", e)) @ back @ letter("B", e)), e)
+            V, Q = letter("V_t", e), letter("Q", e)
+            yield holds(e, "Phi_m exp_At = I")
+            yield holds(e, "V_t = (W - W_t) Phi_m B")
             driven = since_start((V @ Q @ V.T).formula, letter("Q_t", e).formula, horizon)
-            yield Claim(relation(letter("S_Q", e), Term(driven, e)), e)
-            yield Claim(relation(W @ letter("Cov_Q", e) @ W, letter("S_Q", e)), e)
+            yield holds(e, "S_Q = {driven}", driven=Term(driven, e))
+            yield holds(e, "W Cov_Q W = S_Q")
             total = total + letter("Cov_Q", e)
-        yield Claim(relation(letter("Cov", e), total), e)
+        yield holds(e, "Cov = {total}", total=total)
 
     @cached_property
     def best_horizon(self) -> list[str | None]:
@@ -388,32 +383,29 @@ def _write_branch(page: Builder, result: InitialStateCovariance) -> None:
     values = {name: _entry(value) for name, value in result.values_by_letter().items()}
     horizon = answer["horizon"]
     has_input = answer["Q"] is not None
-    Phi, C, R = page["exp_At"], page["C"], page["R"]
-    gramian = since_start((Phi.T @ C.T @ C @ Phi).formula, Literal(answer["gramian"]), horizon)
-    W = page.define("W", page.term(gramian), values["W"], say="gramian_is", closing=False)
-    noise = since_start((Phi.T @ C.T @ R @ C @ Phi).formula, Literal(answer["R_primitive"]), horizon)
-    S_R = page.define(
+    gramian = since_start(page["exp_At.T C.T C exp_At"].formula, Literal(answer["gramian"]), horizon)
+    page.define("W", page.term(gramian), values["W"], say="gramian_is", closing=False)
+    noise = since_start(page["exp_At.T C.T R C exp_At"].formula, Literal(answer["R_primitive"]), horizon)
+    page.define(
         "S_R", page.term(noise), values["S_R"], say="estimate_is" if has_input else "estimate_of_output", closing=False
     )
     if has_input:
         page.set("Phi_m", values["Phi_m"])
         page.set("W_t", values["W_t"])
-        page.conclude_silently(relation(page["Phi_m"] @ Phi, page.identity(result.plant.order)))
-        V = page.define(
-            "V_t", (W - page["W_t"]) @ page["Phi_m"] @ page["B"], values["V_t"], say="estimate_input", closing=False
-        )
-        driven = since_start((V @ page["Q"] @ V.T).formula, Literal(answer["Q_primitive"]), horizon)
+        page.conclude_silently("Phi_m exp_At = I")
+        page.define("V_t", "(W - W_t) Phi_m B", values["V_t"], say="estimate_input", closing=False)
+        driven = since_start(page["V_t Q V_t.T"].formula, Literal(answer["Q_primitive"]), horizon)
         page.define("S_Q", page.term(driven), values["S_Q"], say="estimate_input_integral", closing=False)
     output = page.set("Cov_R", values["Cov_R"])
-    page.conclude_silently(relation(W @ output @ W, S_R))
+    page.conclude_silently("W Cov_R W = S_R")
     page.equal(
-        relation(output, W.inverse @ S_R @ W.inverse, values["Cov_R"]),
+        page.line("Cov_R = W^-1 S_R W^-1 = {value}", value=values["Cov_R"]),
         say="parts_of_covariance" if has_input else "covariance_of_output",
     )
     total = output
     if has_input:
         part = page.set("Cov_Q", values["Cov_Q"])
-        page.equal(relation(part, W.inverse @ page["S_Q"] @ W.inverse, values["Cov_Q"]), say="input_part")
+        page.equal(page.line("Cov_Q = W^-1 S_Q W^-1 = {value}", value=values["Cov_Q"]), say="input_part")
         total = output + part
     page.define("Cov", total, values["Cov"], say="covariance_is", answer=True, closing=False)
     _tell_horizons(result, page)

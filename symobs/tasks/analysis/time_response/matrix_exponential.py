@@ -18,15 +18,21 @@ from symobs.exact.time_functions.matrix_exponential import (
 from symobs.exact.time_functions.matrix_power import INSTANT, matrix_power
 from symobs.exact.time_functions.quasipolynomial import rate_parts
 from symobs.formula.tree import Identity, Letter, Literal, Negative, Power, Product, Sum
-from symobs.formula.tree.term import Term, identity, letter
+from symobs.formula.tree.term import Term, letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
-from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import formula_of_factored, given
-from symobs.tasks.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, time_environment, with_signs
-from symobs.tasks.result import Result, choose, method, task
+from symobs.tasks.analysis.time_response.damping_cases import (
+    DampingCases,
+    Signs,
+    exponential_claims,
+    rate_of,
+    time_environment,
+    with_signs,
+)
+from symobs.tasks.result import Result, choose, holds, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -34,6 +40,7 @@ if TYPE_CHECKING:
     from symobs.exact import Matrix
     from symobs.formula.tree import Formula
     from symobs.formula.tree.term import Term
+    from symobs.proof.certificate.claims import Claim
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Name
@@ -104,9 +111,7 @@ class MatrixExponential(DampingCases):
         if self.answer["matrix"] is None:
             return
         e = time_environment(self.plant, {"A": self.plant.matrices.A, "exp_At": self.answer["matrix"]})
-        Phi = letter("exp_At", e)
-        yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e)
-        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e)
+        yield from exponential_claims(e)
 
     @cached_property
     def denominators(self) -> tuple[Scalar, ...]:
@@ -140,17 +145,15 @@ def _write_branch(page: Builder, result: MatrixExponential) -> None:
     signs = {**result.answer["taken"], **result.answer["chosen"]}
     found, _ = closed_form(result.plant, signs, sums=not result.plant.equations)
     tell_exponential(page, found, result.answer["matrix"], answer=True)
-    Phi = page["exp_At"]
-    start = relation(Phi.at("t", 0), page.identity(result.plant.order))
-    page.verified("exponential_start", rate=relation(rate_of(Phi), page["A"] @ Phi), start=start)
+    start = page.line("exp_At(t = 0) = I")
+    page.verified("exponential_start", rate=page.line("{rate} = A exp_At", rate=rate_of(page["exp_At"])), start=start)
 
 
 def tell_polynomial(page: Builder) -> None:
     """Write the characteristic polynomial with its factors."""
     polynomial = page.plant.matrices.A.characteristic_polynomial(page.plant.variable)
     form = factored(polynomial, page.plant.variable)
-    pencil = page.s @ page.identity(page.plant.order) - page["A"]
-    members = [pencil.apply("det"), page.value(polynomial)]
+    members = [page["det(s I - A)"], page.value(polynomial)]
     if len(polynomial.terms()) > 1 and (len(form.factors) > 1 or form.factors[0][1] > 1):
         members.append(page.term(formula_of_factored(form)))
     page.define("chi", *members, say="exponential_modes", closing=False)
@@ -309,8 +312,8 @@ class MatrixPower(MatrixExponential):
             return
         e = time_environment(self.plant, {"A": self.plant.matrices.A, "A_k": self.answer["matrix"]})
         power = letter("A_k", e)
-        yield Claim(relation(following(power), letter("A", e) @ power), e)
-        yield Claim(relation(power.at("k", 0), identity(self.plant.order, e)), e)
+        yield holds(e, "{power} = A A_k", power=following(power))
+        yield holds(e, "A_k(k = 0) = I")
 
     @property
     def denominators(self) -> tuple[Scalar, ...]:
@@ -332,7 +335,7 @@ def _write_power(page: Builder, result: DampingCases) -> None:
         tell_open_power(page, result.answer["factor"])
         return
     power = tell_power(page, result.plant.matrices.A, result.answer["matrix"], answer=True)
-    start = relation(power.at("k", 0), page.identity(result.plant.order))
+    start = page.line("{k} = I", k=power.at("k", 0))
     page.verified("power_start", rate=relation(following(power), page["A"] @ power), start=start)
 
 

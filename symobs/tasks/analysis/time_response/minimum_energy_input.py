@@ -17,7 +17,6 @@ from symobs.formula.tree.calculus import since_start
 from symobs.formula.tree.term import block, identity, letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
-from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import relation
 from symobs.system.conditions import Condition, vanishing_factors
 from symobs.system.specification import read_gain
@@ -33,13 +32,14 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_polynomial,
     tell_question,
 )
-from symobs.tasks.result import Result, choose, method, page_of, task
+from symobs.tasks.result import Result, choose, holds, method, page_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.formula.tree import Environment
     from symobs.formula.tree.term import Term
+    from symobs.proof.certificate.claims import Certificate, Claim
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Horizon, MatrixText, Name
@@ -158,20 +158,19 @@ class MinimumEnergyInput(DampingCases):
         known = {name: value for name, value in values.items() if value is not None}
         e = time_environment(self.plant, known, None if self.plant.is_discrete else answer["horizon"])
         yield from self._about_powers(e, len(powers))
-        d = letter("x_1f", e) - letter("Phi_0", e) @ letter("x_0", e)
-        yield Claim(relation(letter("d_r", e), d), e)
+        yield holds(e, "d_r = x_1f - Phi_0 x_0")
         if answer.get("w") is not None:
-            w, B, A = letter("w", e), letter("B", e), letter("A", e)
+            B, A = letter("B", e), letter("A", e)
             count = _seen_steps(self)
             reached = block([[A**k @ B if k else B for k in range(count)]])
-            yield Claim(relation(w.T @ reached, Matrix.zeros(1, count * m.B.shape[1])), e)
-            yield Claim(relation(w.T @ letter("d_r", e), "!==", 0), e)
+            yield holds(e, "w.T {reached} = 0", reached=reached)
+            yield holds(e, "w.T d_r !== 0")
             return
         lam = letter("lam_e", e)
-        yield Claim(relation(letter("W", e) @ lam, letter("d_r", e)), e)
+        yield holds(e, "W lam_e = d_r")
         shown = block([[letter("B", e).T @ letter(f"Phi_{k}", e).T @ lam for k in range(1, len(powers))]])
-        yield Claim(relation(letter("u_t", e), shown), e)
-        yield Claim(relation(letter("E_u", e), letter("d_r", e).T @ lam), e)
+        yield holds(e, "u_t = {shown}", shown=shown)
+        yield holds(e, "E_u = d_r.T lam_e")
 
     def _about_powers(self, e: Environment, count: int) -> Iterator[Claim]:
         """Yield what e^{AT} and e^{A(T−t)}, or the powers of A, are."""
@@ -181,12 +180,12 @@ class MinimumEnergyInput(DampingCases):
                 power = (
                     A ** (count - 1 if k == 0 else count - 1 - k) if k < count - 1 else identity(self.plant.order, e)
                 )
-                yield Claim(relation(letter(f"Phi_{k}", e), power), e, "a power of A")
+                yield holds(e, f"Phi_{k} = {{power}}", "a power of A", power=power)
             return
         back = letter("Phi_1", e)
-        yield Claim(relation(rate_of(back), -(A @ back)), e)
-        yield Claim(relation(back.at("t", end), identity(self.plant.order, e)), e)
-        yield Claim(relation(back.at("t", 0), letter("Phi_0", e)), e)
+        yield holds(e, "{rate} = -A Phi_1", rate=rate_of(back))
+        yield holds(e, "{end} = I", end=back.at("t", end))
+        yield holds(e, "Phi_1(t = 0) = Phi_0")
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
@@ -314,7 +313,7 @@ def write_minimum_energy_input(page: Builder, result: MinimumEnergyInput) -> Non
 
 
 def _write_branch(page: Builder, result: MinimumEnergyInput) -> None:
-    answer, plant, A, B = result.answer, result.plant, page["A"], page["B"]
+    answer, plant, A = result.answer, result.plant, page["A"]
     if answer.get("question") is not None:
         if answer["factor"] is None and answer["gramian"] is not None:
             page.remark("energy_open")
@@ -323,7 +322,7 @@ def _write_branch(page: Builder, result: MinimumEnergyInput) -> None:
         return
     end, powers = answer["horizon"], _powers(plant, result.inner)
     x_0, x_f = page.set("x_0", answer["initial"]), page.set("x_1f", answer["final"])
-    stated = (relation(x_0, x_0.as_value), relation(x_f, x_f.as_value))
+    stated = (page.line("x_0 = #"), page.line("x_1f = #"))
     steps = len(powers) - 1
     if plant.is_discrete:
         page.equal(*stated, say="energy_states_discrete")
@@ -343,17 +342,20 @@ def _write_branch(page: Builder, result: MinimumEnergyInput) -> None:
     lam = page.define("lam_e", page.value(answer["multiplier"]), say="energy_multiplier", closing=False)
     page.verified("energy_solved", equation=relation(W @ lam, d))
     if plant.is_discrete:
-        moved = [B.T @ (A.T ** (steps - 1 - k)) @ lam if k < steps - 1 else B.T @ lam for k in range(steps)]
+        moved = [
+            page("B.T {k} lam_e", k=A.T ** (steps - 1 - k)) if k < steps - 1 else page["B.T lam_e"]
+            for k in range(steps)
+        ]
         page.define("U_k", block([moved]), answer["input"], say="energy_sequence", closing=False, answer=True)
     else:
         back = page.set("Phi_b", powers[1])
         page.conclude_silently(
-            relation(rate_of(back), -(A @ back)), relation(back.at("t", end), page.identity(plant.order))
+            page.line("{rate} = -A Phi_b", rate=rate_of(back)), page.line("{end} = I", end=back.at("t", end))
         )
         u = answer["input"]
         page.define(
             "u_t",
-            B.T @ back.T @ lam,
+            "B.T Phi_b.T lam_e",
             u[0, 0] if u.shape == (1, 1) else u,
             say="energy_input",
             closing=False,
@@ -361,7 +363,7 @@ def _write_branch(page: Builder, result: MinimumEnergyInput) -> None:
         )
     page.define(
         "E_u",
-        d.T @ lam,
+        "d_r.T lam_e",
         answer["energy"],
         say="energy_spent_discrete" if plant.is_discrete else "energy_spent",
         closing=False,
@@ -372,14 +374,13 @@ def _write_branch(page: Builder, result: MinimumEnergyInput) -> None:
 def _tell_gramian(page: Builder, result: MinimumEnergyInput) -> Term:
     A, B, W = page["A"], page["B"], result.answer["gramian"]
     if result.plant.is_discrete:
-        total = B @ B.T
+        total = page["B B.T"]
         steps = int(result.answer["horizon"].fraction())
         for k in range(1, steps):
             total = total + A**k @ B @ B.T @ A.T**k
         counted = Counted("step", steps)
         return page.define("W", total, W, say="energy_gramian_discrete", closing=False, steps=counted)
-    Phi = page["exp_At"]
-    integrand = Phi @ B @ B.T @ Phi.T
+    integrand = page["exp_At B B.T exp_At.T"]
     whole = page.term(
         since_start(integrand.formula, Literal(result.inner.answer["function"]), result.answer["horizon"])
     )
@@ -394,7 +395,7 @@ def _tell_unreachable(page: Builder, result: MinimumEnergyInput, d: Term) -> Non
     page.conclude(
         "energy_unreachable",
         relation(w @ d, "!==", 0),
-        row=relation(w, w.as_value),
-        annuls=relation(w @ page["Ctr"], Matrix.zeros(1, count * B.value.shape[1])),
-        left=relation(w @ d, (w @ d).as_value),
+        row=page.line("w_d = #"),
+        annuls=page.line("w_d Ctr = 0"),
+        left=page.line("w_d {d} = #", d=d),
     )

@@ -15,13 +15,18 @@ from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import integral, matrix_at, product, table_of
 from symobs.formula.tree import Literal
 from symobs.formula.tree.calculus import since_start
-from symobs.formula.tree.term import Term, identity, letter
+from symobs.formula.tree.term import Term, letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
-from symobs.proof.certificate.claims import Claim
-from symobs.proof.derivation.builder import relation
 from symobs.system import StateSpace
-from symobs.tasks.analysis.time_response.damping_cases import DampingCases, Signs, from_zero, rate_of, time_environment
+from symobs.tasks.analysis.time_response.damping_cases import (
+    DampingCases,
+    Signs,
+    exponential_claims,
+    from_zero,
+    rate_of,
+    time_environment,
+)
 from symobs.tasks.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
 from symobs.tasks.analysis.time_response.matrix_exponential import (
     TIME,
@@ -34,7 +39,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_polynomial,
     tell_question,
 )
-from symobs.tasks.result import Result, choose, method, task
+from symobs.tasks.result import Result, choose, holds, method, task
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -42,6 +47,7 @@ if TYPE_CHECKING:
     from symobs.exact import Scalar
     from symobs.exact.time_functions.matrix_exponential import Exponential
     from symobs.formula.tree import Environment
+    from symobs.proof.certificate.claims import Claim
     from symobs.proof.derivation.builder import Builder
     from symobs.system.specification import Horizon, Name
 
@@ -87,12 +93,11 @@ class ZeroOrderHold(DampingCases):
         values |= {f"{name} at T": substitute(values[name], {"t": period}) for name in ("exp_At", "driven")}
         e = time_environment(self.plant, {**values, "A_zoh": self.answer["A_d"], "B_zoh": self.answer["B_d"]})
         Phi = letter("exp_At", e)
-        yield Claim(relation(rate_of(Phi), letter("A", e) @ Phi), e)
-        yield Claim(relation(Phi.at("t", 0), identity(self.plant.order, e)), e)
-        yield Claim(relation(letter("A_zoh", e), Phi.at("t", period)), e)
+        yield from exponential_claims(e)
+        yield holds(e, "A_zoh = {period}", period=Phi.at("t", period))
         yield from from_zero(["driven"], e)
         whole = Term(_integral(e, letter("driven", e), period), e)
-        yield Claim(relation(letter("B_zoh", e), whole), e)
+        yield holds(e, "B_zoh = {whole}", whole=whole)
 
     @property
     def sampled(self) -> StateSpace:
@@ -167,10 +172,14 @@ def _write_branch(page: Builder, result: ZeroOrderHold) -> None:
     page.define("A_zoh", Phi.at("t", period), answer["A_d"], say="zero_order_hold_held", answer=True, closing=False)
     whole = page.term(_integral(page.environment, answer["driven"], period))
     page.define("B_zoh", whole, answer["B_d"], say="zero_order_hold_integral", answer=True, closing=False)
-    A, A_d = page["A"], page["A_zoh"]
-    start = relation(Phi.at("t", 0), page.identity(result.plant.order))
-    balance = relation(A @ page["B_zoh"], (A_d - page.identity(result.plant.order)) @ page["B"])
-    page.verified("zero_order_hold_checked", relation(rate_of(Phi), A @ Phi), start=start, balance=balance)
+    start = page.line("exp_At(t = 0) = I")
+    balance = page.line("A B_zoh = (A_zoh - I) B")
+    page.verified(
+        "zero_order_hold_checked",
+        page.line("{rate} = A exp_At", rate=rate_of(page["exp_At"])),
+        start=start,
+        balance=balance,
+    )
 
 
 @method("zero_order_hold/integral", source="astrom1997, ch. 2")

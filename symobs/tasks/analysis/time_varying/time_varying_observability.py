@@ -17,7 +17,7 @@ from symobs.exact.core.generators import substitute
 from symobs.exact.time_functions.antiderivative import collected
 from symobs.exact.time_functions.quasipolynomial import to_quasipolynomial
 from symobs.formula.tree import Environment, Integral, Literal
-from symobs.formula.tree.term import Term, block, identity
+from symobs.formula.tree.term import Term, block
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded
 from symobs.proof.certificate.claims import Claim
@@ -38,7 +38,7 @@ from symobs.tasks.analysis.time_varying.time_varying_solution import (
     reject_sizes_and_names,
 )
 from symobs.tasks.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME, in_time
-from symobs.tasks.result import Case, Result, choose, equality, method, task_in_time
+from symobs.tasks.result import Case, Result, choose, equality, holds, method, task_in_time
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -136,12 +136,12 @@ class TimeVaryingObservability(Result):
         named, zero = dependences([*meant.values(), *self.closed_forms], self.asked_for)
         e = Environment(TIME, meant, signs=signs, coefficients=named, relations=zero)
         yield equality(len(answer["stack"]), order, e, "the stack has n blocks")
-        yield equality(e["N_0"], e["C"], e)
+        yield holds(e, "N_0 = C")
         for k in range(order - 1):
             row = e[f"N_{k}"]
             yield equality(e[f"N_{k + 1}"], row @ e["A"] + row.derivative, e)
         stacked = block([[e[f"N_{k}"]] for k in range(order)])
-        yield equality(e["O"], stacked, e)
+        yield holds(e, "O = {stacked}", stacked=stacked)
         yield from self._rank_claims(e)
         if answer["transition_matrix"] is not None:
             yield from self._transition_claims(e)
@@ -164,9 +164,8 @@ class TimeVaryingObservability(Result):
                 instant = minor.at(TIME, answer["point"])
                 yield Claim(relation(instant, "!=", 0), e, f"it is not 0 at t = {answer['point']}")
         if hidden:
-            A, C, states, X = (e[name] for name in ("A", "C", "V", "X"))
-            yield equality(C @ states, Matrix.zeros(self.plant.outputs, hidden), e)
-            yield equality(A @ states - states.derivative, states @ X, e)
+            yield holds(e, "C V = 0")
+            yield holds(e, "A V - V' = V X")
             yield Claim(relation(determinant_term(V.select(answer["free"], range(hidden)), e), "!==", 0), e)
 
     def _inside_claims(self, e: Environment) -> Iterator[Claim]:
@@ -181,8 +180,8 @@ class TimeVaryingObservability(Result):
     def _transition_claims(self, e: Environment) -> Iterator[Claim]:
         answer, order, asked = self.answer, self.plant.order, self.asked_for
         Phi = e["Phi"]
-        yield equality(Phi.derivative, e["A"] @ Phi, e)
-        yield equality(Phi.at(TIME, Scalar.symbol(START)), identity(order, e), e)
+        yield holds(e, "Phi' = A Phi")
+        yield holds(e, "{value} = I", value=Phi.at(TIME, Scalar.symbol(START)))
         seen = e["C"] @ Phi.at(START, asked.start)
         hidden = order - answer["rank"]
         if answer["kernel"] is None and _has_value(answer["transition_matrix"], asked.start):
@@ -190,10 +189,9 @@ class TimeVaryingObservability(Result):
         if answer["kernel"] is not None:
             yield equality(answer["kernel"].shape[1], hidden, e, "there are n - rank vectors v")
         if answer["kernel"] is not None and hidden:
-            v = e["v"]
-            yield equality(v.derivative, Matrix.zeros(order, hidden), e)
-            yield equality(seen @ v, Matrix.zeros(self.plant.outputs, hidden), e)
-            yield Claim(relation((v.T @ v).apply("det"), "!==", 0), e, "the vectors v are independent")
+            yield holds(e, "v' = 0")
+            yield holds(e, "{seen} v = 0", seen=seen)
+            yield holds(e, "det(v.T v) !== 0", "the vectors v are independent")
         if answer["gramian_in_time"] is not None:
             G = e["G"]
             yield equality(G.derivative, seen.T @ seen, e)
@@ -213,8 +211,8 @@ class TimeVaryingObservability(Result):
             state = e["Phi"].at(START, start) @ e["x_0"] + f
             seen = e["C"] @ state
             seen = seen + e["D"] @ e["u"] if "u" in e.values and m.has_feedthrough else seen
-            yield equality(e["x_0"].derivative, Matrix.zeros(self.plant.order, 1), e)
-            yield equality(seen, e["y"], e)
+            yield holds(e, "x_0' = 0")
+            yield holds(e, "{seen} = y", seen=seen)
 
     def _refusal_claims(self, e: Environment) -> Iterator[Claim]:
         """Yield W x = ∫ Φᵀ Cᵀ ξ, which has one solution, for a state x whose output is another one."""

@@ -85,20 +85,20 @@ def _transition(page: Builder, result: TimeVaryingObservability) -> None:
     if Phi is None or found is None:
         page.remark("transition_open")
         return
-    A, order = page["A"], page.plant.order
+    A = page["A"]
     if found.matrix != Phi:
         page.define("Phi", page.value(Phi), answer=True)
     elif found.kind != "nilpotent":
         page.define("Phi", page.value(Phi), say=f"transition_{found.kind}", answer=True)
     elif not found.terms:
-        zero = relation(A, Matrix.zeros(order, order))
-        page.define("Phi", page.identity(order), say="transition_constant", zero=zero, answer=True)
+        zero = page.line("A = 0")
+        page.define("Phi", page.identity(page.plant.order), say="transition_constant", zero=zero, answer=True)
     elif found.terms[0] @ A.value == A.value @ found.terms[0]:
         _exponential(page, found.terms)
     else:
         _series(page, found.terms)
-    rate = relation(page["Phi"].derivative, A @ page["Phi"])
-    start = relation(page["Phi"].at(TIME, Scalar.symbol(START)), page.identity(order))
+    rate = page.line("Phi' = A Phi")
+    start = page.line("{value} = I", value=page["Phi"].at(TIME, Scalar.symbol(START)))
     page.verified("transition_checked", rate=rate, start=start)
     if result.denominators:
         page.assume("closed_form_if", *result.denominators)
@@ -116,13 +116,15 @@ def _integral_of_A(page: Builder, factor: Term | None, value: Matrix) -> Term:
 
 
 def _exponential(page: Builder, terms: tuple[Matrix, ...]) -> None:
-    M, A, order, last = terms[0], page["A"], page.plant.order, len(terms)
+    M, order, last = terms[0], page.plant.order, len(terms)
     page.set("M", M)
-    commutes = relation(A @ page["M"], page["M"] @ A)
+    commutes = page.line("A M = M A")
     member = _integral_of_A(page, None, M)
-    page.equal(relation(page["M"], member, page.value(M)), say="transition_nilpotent", commutes=commutes)
+    page.equal(
+        page.line("M = {member} = {value}", member=member, value=M), say="transition_nilpotent", commutes=commutes
+    )
     power = relation(page["M"] ** (last + 1), Matrix.zeros(order, order))
-    total, factorial = page.identity(order) + page["M"], 1
+    total, factorial = page["I + M"], 1
     for k in range(2, last + 1):
         factorial *= k
         total = total + page["M"] ** k / factorial
@@ -139,7 +141,7 @@ def _series(page: Builder, terms: tuple[Matrix, ...]) -> None:
     total = page.identity(order)
     for k in range(1, len(terms) + 1):
         total = total + page[f"Phi_{k}"]
-    end = relation(page["A"] @ page[f"Phi_{len(terms)}"], Matrix.zeros(order, order))
+    end = page.line("A {terms} = 0", terms=page[f"Phi_{len(terms)}"])
     page.define("Phi", total, say="peano_baker_sum", end=end, answer=True)
 
 
@@ -178,7 +180,7 @@ def _gramian(page: Builder, result: TimeVaryingObservability) -> None:
             page.remark("gramian_long")
     else:
         Phi = page["Phi"].at(START, asked.start)
-        squared = Phi.T @ page["C"].T @ page["C"] @ Phi
+        squared = page("{value} C.T C {Phi}", value=Phi.T, Phi=Phi)
         whole = integral(page, squared, TIME, asked.start, asked.end, answer["gramian_in_time"])
         page.define("W", whole, page.value(answer["gramian"]), say="gramian", answer=True, closing=False)
         if answer["rank"] == page.plant.order and result.gramian_determinant is not None:
@@ -190,12 +192,12 @@ def _gramian(page: Builder, result: TimeVaryingObservability) -> None:
     zero = Matrix.zeros(page.plant.outputs, answer["kernel"].shape[1])
     facts = [relation(_seen(page, result) @ page["v"], zero)]
     if answer["gramian"] is not None:
-        facts.append(relation(page["W"] @ page["v"], Matrix.zeros(*answer["kernel"].shape)))
+        facts.append(page.line("W v = 0"))
     page.equal(relation(page["v"], answer["kernel"]), *facts, say=key)
 
 
 def _determinant(page: Builder, value: Scalar) -> None:
-    det = page["W"].apply("det")
+    det = page["det(W)"]
     shown = page.value(value) if has_functions(value) else determinant_form(page, value)
     if not has_functions(value) and never_zero(value, page.plant.symbols.signs):
         page.equal(relation(det, shown, "!=", 0))
@@ -211,20 +213,20 @@ def _determinant(page: Builder, value: Scalar) -> None:
 def _rank_test(page: Builder, result: TimeVaryingObservability) -> None:
     """Build N₀, N₁, … and read off the rank over the functions of t."""
     order, answer = page.plant.order, result.answer
-    page.define("N_0", page["C"], say="stack_rule")
+    page.define("N_0", "C", say="stack_rule")
     for k in range(order - 1):
-        row = page[f"N_{k}"]
-        page.define(f"N_{k + 1}", row @ page["A"] + row.derivative)
+        page.define(f"N_{k + 1}", f"N_{k} A + N_{k}'")
     rows = [[page[f"N_{k}"]] for k in range(order)]
     page.define("O", block(rows), say="stack_matrix", answer=True)
     by_functions = has_functions(answer["matrix"])
     if answer["rank"] < order:
         _hidden(page, result)
+        page.steps += [_case(page, case) for case in result.case_tree]
         return
     conditions = [c.expression for c in result.holds_where if c.kind == "existence"]
     determinant = page.plant.simplified(answer["matrix"].determinant()) if page.plant.outputs == 1 else None
     if determinant is not None:
-        page.equal(relation(page["O"].apply("det"), determinant_form(page, determinant)))
+        page.equal(page.line("det(O) = {value}", value=determinant_form(page, determinant)))
     if conditions:
         page.assume("stack_yes_if", *conditions)
     elif determinant is not None and answer["point"] is not None:
@@ -236,7 +238,7 @@ def _rank_test(page: Builder, result: TimeVaryingObservability) -> None:
         minor = _minor(page, answer["rows"])
         page.conclude("stack_yes_minor", minor=relation(minor, "!==", minor.scalar * 0))
     else:
-        page.conclude("stack_yes", rank=relation(page["O"].apply("rank"), answer["rank"]))
+        page.conclude("stack_yes", rank=page.line("rank(O) = {value}", value=answer["rank"]))
     drop = _instant_of_drop(result)
     if drop is not None:
         at_drop = page["O"].at(TIME, drop)
@@ -272,14 +274,14 @@ def _hidden(page: Builder, result: TimeVaryingObservability) -> None:
     if has_functions(answer["matrix"]):
         page.set("V", V)
         zero = Matrix.zeros(answer["matrix"].shape[0], V.shape[1])
-        page.conclude("stack_no_states", hidden=relation(page["O"] @ page["V"], zero))
+        page.conclude("stack_no_states", hidden=page.line("O V = {zero}", zero=zero))
         page.equal(relation(page["V"], V), say="stack_moving")
     else:
-        page.conclude("stack_no", rank=relation(page["O"].apply("rank"), answer["rank"], "<", order))
+        page.conclude("stack_no", rank=page.line("rank(O) = {value} < {order}", value=answer["rank"], order=order))
         page.define("V", page.value(V), say="stack_moving")
     page.set("X", X)
-    unseen = relation(page["C"] @ page["V"], Matrix.zeros(page.plant.outputs, V.shape[1]))
-    stays = relation(page["A"] @ page["V"] - page["V"].derivative, page["V"] @ page["X"], page["V"] @ page.value(X))
+    unseen = page.line("C V = 0")
+    stays = page.line("A V - V' = V X = V {value}", value=X)
     page.equal(stays, say="stack_invariant", unseen=unseen)
 
 
@@ -289,7 +291,7 @@ def _case(page: Builder, case: Case, *, modulo: bool = False) -> Step:
     deficient = case.result.answer["rank"] < page.plant.order
     steps: list[Step] = []
     if not has_functions(page["O"].value):
-        found = relation(page["O"].apply("rank"), case.result.answer["rank"])
+        found = page.line("rank(O) = {value}", value=case.result.answer["rank"])
         steps.append(Conclude(sentence("case_stack" if deficient else "case_stack_yes", {"rank": found})))
     elif deficient:
         steps.append(Conclude(sentence("case_stack_states", {})))
@@ -299,7 +301,7 @@ def _case(page: Builder, case: Case, *, modulo: bool = False) -> Step:
     if deficient:
         hidden = case.result.answer["hidden"]
         zero = Matrix.zeros(page["O"].value.shape[0], hidden.shape[1])
-        steps.append(Equal((relation(page["O"] @ page.value(hidden), zero),)))
+        steps.append(Equal((page.line("O {hidden} = {zero}", hidden=hidden, zero=zero),)))
     where = stratum_of(case)
     # where equations or inequations hold, modulo which a rank is seen, what is outside has to be known with them
     modulo = modulo or isinstance(where, Conjunction) or bool(case.result.plant.equations)
@@ -350,7 +352,7 @@ def _example(page: Builder) -> None:
     page.set("A_1", A)
     page.set("C_1", C)
     frozen = _frozen_test(page["A_1"], page["C_1"], 2).apply("rank")
-    derived = relation(page["C_1"] @ page["A_1"] + page["C_1"].derivative, Matrix.zeros(1, 2))
+    derived = page.line("C_1 A_1 + C_1' = 0")
     page.caution(
         "frozen_example",
         state=relation(page["A_1"], A),
@@ -372,12 +374,12 @@ def _initial_state(page: Builder, result: TimeVaryingObservability) -> None:
         page.remark("x0_open")
         return
     if asked.input is None:
-        page.define("xi", page["y_t"], say="xi_same")
+        page.define("xi", "y_t", say="xi_same")
     else:
         page.define("u_t", _signal(page, asked.input), say="input_given")
         _forced(page, result)
-        xi = page["y_t"] - page["C"] @ page["x_u"]
-        page.define("xi", xi - page["D"] @ page["u_t"] if m.has_feedthrough else xi, say="xi_forced")
+        xi = page["y_t - C x_u"]
+        page.define("xi", page["y_t - C x_u - D u_t"] if m.has_feedthrough else xi, say="xi_forced")
     if answer["x0"] is None:
         if answer["rank"] < page.plant.order:
             page.conclude("x0_not_unique")
@@ -390,16 +392,14 @@ def _initial_state(page: Builder, result: TimeVaryingObservability) -> None:
     moment = antiderivative_since(tidied((seen.T @ page["xi"]).value), asked.start)
     assert moment is not None  # noqa: S101 - x₀ was found by it
     Phi = page["Phi"].at(START, asked.start)
-    whole = integral(page, Phi.T @ page["C"].T @ page["xi"], TIME, asked.start, asked.end, moment)
-    page.define(
-        "x_0", page["W"].inverse @ whole, page.value(answer["x0"]), say="x0_formula", answer=True, closing=False
-    )
+    whole = integral(page, page("{value} C.T xi", value=Phi.T), TIME, asked.start, asked.end, moment)
+    page.define("x_0", page["W^-1"] @ whole, page.value(answer["x0"]), say="x0_formula", answer=True, closing=False)
     free = page["Phi"].at(START, asked.start) @ page["x_0"]
     history = free if asked.input is None else free + page["x_u"]
     page.define("x_t", history, page.value(tidied(history.value)), say="state_history", closing=False)
-    output = page["C"] @ page["x_t"]
+    output = page["C x_t"]
     if asked.input is not None and m.has_feedthrough:
-        output = output + page["D"] @ page["u_t"]
+        output = page("{output} + D u_t", output=output)
     page.verified("x0_checked", output=relation(output, page["y_t"]))
 
 
@@ -407,9 +407,9 @@ def _refuse(page: Builder, result: TimeVaryingObservability) -> None:
     """Give the only state that could explain the output, and what its own output leaves."""
     asked, answer = result.asked_for, result.answer
     Phi = page["Phi"].at(START, asked.start)
-    whole = integral(page, Phi.T @ page["C"].T @ page["xi"], TIME, asked.start, asked.end, answer["moment"])
-    page.define("x_0", page["W"].inverse @ whole, say="x0_candidate")
-    rest = page["xi"] - _seen(page, result) @ page["x_0"]
+    whole = integral(page, page("{value} C.T xi", value=Phi.T), TIME, asked.start, asked.end, answer["moment"])
+    page.define("x_0", page["W^-1"] @ whole, say="x0_candidate")
+    rest = page("xi - {seen} x_0", seen=_seen(page, result))
     shown = rest.value[0, 0] if isinstance(rest.value, Matrix) and rest.value.shape == (1, 1) else rest.value
     page.conclude("x0_none", rest=relation(rest, shown, "!==", shown * 0))
 
@@ -437,7 +437,7 @@ def _forced(page: Builder, result: TimeVaryingObservability) -> None:
             say="forced_state",
             closing=False,
         )
-    rate = relation(page["x_u"].derivative, page["A"] @ page["x_u"] + page["B"] @ page["u_t"])
+    rate = page.line("x_u' = A x_u + B u_t")
     page.verified(
         "forced_checked", rate=rate, start=relation(page["x_u"].at(TIME, start), Matrix.zeros(page.plant.order, 1))
     )

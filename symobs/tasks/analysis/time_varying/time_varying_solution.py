@@ -31,14 +31,8 @@ if TYPE_CHECKING:
 
 #: The end of the interval where none is given.
 END = "t1"
-
-
 _ORDERS_UP_TO = 8
-
-
 _HALVINGS = 60
-
-
 _NEW = "u"
 
 

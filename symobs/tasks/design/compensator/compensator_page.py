@@ -17,14 +17,16 @@ from symobs.stability.inequalities.simplify import as_inequality
 from symobs.system.specification import DesiredPolynomial
 from symobs.tasks.analysis.page_parts import factored_form, formula_of_factored, given, in_blocks, is_narrow
 from symobs.tasks.analysis.rank.rank_page import square_test
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
+from symobs.tasks.design.block_diagrams import draw_compensator, draw_loop, draw_unity_loop
 from symobs.tasks.design.compensator.compensator import CompensatorDesign
 from symobs.tasks.design.compensator.output_feedback import caution_hidden
+from symobs.tasks.design.error_plots import plot_estimate
 from symobs.tasks.design.full_order.observer import model_and_innovation, write_observer
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, PlacementProblem, page_style
 from symobs.tasks.design.gain.gain_page import name_coefficients, say_as_required, write_case, write_cases, write_gain
-from symobs.tasks.design.page_parts import caution_poles, draw_compensator, draw_loop, draw_unity_loop, plot_estimate
+from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 from symobs.tasks.result import page_of
 
@@ -57,7 +59,7 @@ def caution_repeated(page: Builder, design: OutputFeedback) -> None:
             if plant.order - found >= power:
                 continue
             held = relation(offset.apply("rank"), found)
-            single = page["phi_c"] / page.value(desired.polynomial / factor)
+            single = page("phi_c / {factor}", factor=desired.polynomial / factor)
             instead = _with_distinct_poles(page, desired)
             mode, times = modes_of_double(pole, plant.variable)
             page.caution(
@@ -203,7 +205,7 @@ def _state_space(page: Builder, design: CompensatorDesign) -> None:
     """Write u = −K x̂ put into the observer: (4.23), (4.24)."""
     m = design.plant.matrices
     model, innovation = model_and_innovation(page)
-    page.signal("u", page["(-K) x_hat"], say="separation")
+    page.signal("u", "(-K) x_hat", say="separation")
     rate = page.line("x_hat' = {model} + L {innovation}", model=model, innovation=innovation)
     both: dict[str, Any] = {"law": page.line("u = (-K) x_hat"), "rate": rate}
     closed, shown = "A - B K - L C", "#A - #(B K) - #(L C)"
@@ -270,7 +272,7 @@ def say_stability(page: Builder, design: OutputFeedback, stem: str, proper: Fact
         key = f"{stem}_{word}_low" if reason and f"{stem}_{word}_low" in PHRASES else f"{stem}_{word}"
         filled = {**slots, **(reason if key.endswith("_low") else {})}
         if found == "no" and page.defines("phi_c") and page.defines("phi_o"):
-            loop, signs = page["phi_c"] @ page["phi_o"], plant.symbols.signs
+            loop, signs = page["phi_c phi_o"], plant.symbols.signs
             if stability(loop.scalar, plant.variable, signs, discrete=plant.is_discrete).verdict == "yes":
                 key, facts = f"{key}_alone", [*facts, predicate("stable", loop)]
         page.conclude(key, *facts, **filled)
@@ -317,9 +319,7 @@ def _error_coordinates(page: Builder, design: CompensatorDesign, *, large: bool)
     numbers = []
     if not large and order <= readability.WRITTEN_OUT_ORDER and is_narrow(second.value):
         numbers = [in_blocks(page, second.value, halves, halves) @ page["[x; x_hat]"]]
-    page.conclude_silently(
-        relation(turn @ turn, page.identity(2 * order)), page.line("{T} {M} {T} = A_cl", T=turn, M=second)
-    )
+    page.conclude_silently(page.line("{turn} = I", turn=turn @ turn), page.line("{T} {M} {T} = A_cl", T=turn, M=second))
     states = page("{M} [x; x_hat]", M=second)
     turned = page.line("[x; e] = {T} [x; x_hat]", T=turn)
     page.equal(relation(page["[x; x_hat]'"], states, *numbers), say="estimate_coordinates", turned=turned)
@@ -336,7 +336,7 @@ def return_path(page: Builder, design: OutputFeedback) -> None:
     factors = page.term(formula_of_factored(form))
     few = form.value.size + design.answer["F"].size <= readability.LOOP
     if few:
-        inserted = page.value(1) + plant_form @ page.value(design.answer["F"])
+        inserted = page("1 + {plant_form} {F}", plant_form=plant_form, F=design.answer["F"])
         below = factored_form(page, inserted.scalar.denominator)
         together = page.value(inserted.scalar.numerator) / below
         page.equal(relation(page["1 + P F"], inserted, together), say="return_difference")
@@ -354,12 +354,14 @@ def _say_poles(page: Builder, design: OutputFeedback, loop: Scalar) -> None:
     """Say whose poles those of G_cl are, and which of them cancel in it."""
     variable, whole = design.plant.variable, design.loop_polynomial
     poles, denominator = _poles(design, whole.value), monic(loop.denominator, variable)
-    lost, product = whole.value / denominator, page["phi_c"] @ page["phi_o"]
+    lost, product = whole.value / denominator, page["phi_c phi_o"]
     short = all(_has_short_roots(factor, variable) for factor, _ in whole.factors)
     if lost.is_one and short:
         page.conclude_silently(Roots(product.formula, poles), Roots(page["G_cl"].formula, poles))
     elif lost.is_one:
-        page.conclude(f"loop_polynomial{of_given(design)}", relation(product / page.value(denominator), 1))
+        page.conclude(
+            f"loop_polynomial{of_given(design)}", page.line("phi_c phi_o / {denominator} = 1", denominator=denominator)
+        )
     elif short:
         cancelled = roots_of(lost, variable)
         left = tuple((Counter(poles) - Counter(cancelled)).elements())

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 from symobs.exact import Matrix, Scalar, transfer
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import block, identity
+from symobs.formula.tree.term import identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
 from symobs.ground.on_demand import OnDemand
@@ -22,7 +22,7 @@ from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import half_of
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver, reduced_observer_of
-from symobs.tasks.result import equality
+from symobs.tasks.result import holds
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -79,18 +79,18 @@ class MinimalOrderCompensator(OutputFeedback):
             return
         direct, rest = split(self.answer["K"], self.estimator)
         e = e.extended_by(values={"N": direct, "K_2": rest})
-        K, M, N, K_2, D, F = (e[name] for name in ("K", "M_z", "N", "K_2", "D", "F"))
-        yield equality(K @ M, block([[N, K_2]]), e)
+        N, K_2, D = (e[name] for name in ("N", "K_2", "D"))
+        yield holds(e, "K M_z = [N, K_2]")
         one = identity(self.plant.inputs, e)
         if not self.exists:
-            yield equality((one - N @ D).apply("det"), 0, e)
+            yield holds(e, "det(I - N D) = 0")
             return
-        F_z, G, H = (e[name] for name in ("F_z", "G_z", "H_z"))
+        F_z, G = e["F_z"], e["G_z"]
         resolvent = F_z.pencil.inverse
         loop = one + K_2 @ resolvent @ G
         if self.plant.matrices.has_feedthrough:
             loop = loop - N @ D
-        yield equality(F, loop.inverse @ (K_2 @ resolvent @ H + N), e)
+        yield holds(e, "F = {inverse} (K_2 pencil(F_z)^-1 H_z + N)", inverse=loop.inverse)
 
     @cached_property
     def well_posedness(self) -> Scalar:

@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
 from symobs.formula.tree import Literal, Quotient
-from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation import CaseStep, Conclude
 from symobs.proof.derivation.builder import Builder, predicate, relation, sentence
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import formula_of_factored, given, in_blocks, is_narrow
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
 from symobs.tasks.design.compensator.compensator import KnownState
 from symobs.tasks.design.compensator.compensator_page import (
     Namer,
@@ -26,15 +25,17 @@ from symobs.tasks.design.compensator.compensator_page import (
 )
 from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrderCompensator
 from symobs.tasks.design.compensator.output_feedback import caution_hidden
+from symobs.tasks.design.components import combination
+from symobs.tasks.design.error_plots import plot_estimate
 from symobs.tasks.design.full_order.observer import write_observer
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, page_style
 from symobs.tasks.design.gain.gain_page import write_cases, write_gain
-from symobs.tasks.design.page_parts import combination, plot_estimate
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.tasks.design.reduced_order.reduced_order_observer_page import observer_state, write_observer_of_rest
 from symobs.tasks.result import page_of
 
 if TYPE_CHECKING:
+    from symobs.formula.tree.term import Term
     from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 
 
@@ -69,7 +70,7 @@ def write_minimal_order(page: Builder, design: MinimalOrderCompensator) -> None:
 
 def _one(page: Builder) -> Term:
     """Return I, or 1 for one input."""
-    return page.identity(page.plant.inputs) if page.plant.inputs > 1 else page.value(1)
+    return page.identity(page.plant.inputs) if page.plant.inputs > 1 else page["1"]
 
 
 def write_control_law(page: Builder, design: MinimalOrderCompensator, *, large: bool) -> None:
@@ -77,11 +78,11 @@ def write_control_law(page: Builder, design: MinimalOrderCompensator, *, large: 
     plant = page.plant
     partitioned_gain(page)
     K_1, K_2 = page["K_1"], page["K_2"]
-    page.signal("u", -K_1 @ page["x_1"] - K_2 @ page["x_2_hat"], say="minimal_control")
+    page.signal("u", page("(-K_1) x_1 - {K_2} x_2_hat", K_2=K_2), say="minimal_control")
     if K_1.value.shape == K_2.value.shape == (1, 1) and not plant.matrices.has_feedthrough:
         pairs = [(-K_1.value, page["y"]), (-K_2.value, page["x_2_hat"])]
         page.equal(relation(page["u"], *_numbers(page, pairs, large=False)))
-    page.conclude_silently(relation(page["u"], -page["K"] @ page["x_hat"]))
+    page.conclude_silently("u = (-K) x_hat")
     page.define("K_y", K_1 + K_2 @ page["L"], say="output_gain")
     K_y, K_2, u, y, z = (page[name] for name in ("K_y", "K_2", "u", "y", observer_state(page)))
     law, pairs = -K_y @ y - K_2 @ z, [(-K_y.value, y), (-K_2.value, z)]
@@ -110,11 +111,11 @@ def write_control_law(page: Builder, design: MinimalOrderCompensator, *, large: 
 def partitioned_gain(page: Builder) -> None:
     """Write [K₁ K₂] = K T⁻¹."""
     plant, K, T = page.plant, page["K"], page["T"]
-    whole = K if T.value == Matrix.identity(plant.order) else K @ T.inverse
+    whole = K if T.value == Matrix.identity(plant.order) else page["K T^-1"]
     parts, inputs = whole.value.normal(), range(plant.inputs)
     page.set("K_1", parts.select(inputs, range(plant.outputs)))
     page.set("K_2", parts.select(inputs, range(plant.outputs, plant.order)))
-    both = block([[page["K_1"], page["K_2"]]])
+    both = page["[K_1, K_2]"]
     page.equal(relation(whole, both, both.as_value), say="partitioned_gain")
 
 
@@ -130,13 +131,13 @@ def _closed(page: Builder, *, large: bool) -> None:
     """Write the compensator in state space."""
     F, G, H, K_y, K_2 = (page[name] for name in ("F_z", "G_z", "H_z", "K_y", "K_2"))
     y, z = page["y"], page[observer_state(page)]
-    solved, direct = (page["W_u"] @ K_2, page["W_u"] @ K_y) if page.plant.matrices.has_feedthrough else (K_2, K_y)
+    solved, direct = (page["W_u K_2"], page["W_u K_y"]) if page.plant.matrices.has_feedthrough else (K_2, K_y)
     own, driven = F - G @ solved, H - G @ direct
     pairs = [(own.value, z), (driven.value, y)]
     page.set("A_c", own.value)
     page.set("B_c", driven.value)
     page.equal(
-        relation(z.derivative, page["A_c"] @ z + page["B_c"] @ y, *_numbers(page, pairs, large=large)),
+        relation(z.derivative, page("A_c {z} + B_c y", z=z), *_numbers(page, pairs, large=large)),
         say="minimal_closed",
         state=relation(page["A_c"], own),
         input=relation(page["B_c"], driven),
@@ -145,9 +146,8 @@ def _closed(page: Builder, *, large: bool) -> None:
 
 def _own_denominator(page: Builder) -> Term:
     """Return det(sI − A_c), over W where the output contains the input."""
-    order = page.plant.order - page.plant.outputs
-    own = (page.s @ page.identity(order) - page["A_c"]).apply("det")
-    return own / page["W_u"] if page.plant.matrices.has_feedthrough else own
+    own = page["det(s I - A_c)"]
+    return page["det(s I - A_c) / W_u"] if page.plant.matrices.has_feedthrough else own
 
 
 def _apart(page: Builder, pencil: Term) -> list[Term]:
@@ -160,18 +160,20 @@ def _apart(page: Builder, pencil: Term) -> list[Term]:
     if rest.is_zero or K_y.is_zero:
         return []
     falls = rest.numerator.is_constant and rest.numerator.fraction() < 0
-    parts = page.value(K_y[0, 0]) - page.value(-rest) if falls else page.value(K_y[0, 0]) + page.value(rest)
-    return [page.value(K_2[0, 0]) * page.value(state) + page.value(K_y[0, 0]), parts]
+    parts = (
+        page("{K_y} - {rest}", K_y=K_y[0, 0], rest=-rest) if falls else page("{K_y} + {rest}", K_y=K_y[0, 0], rest=rest)
+    )
+    return [page("{K_2} {state} + {K_y}", K_2=K_2[0, 0], state=state, K_y=K_y[0, 0]), parts]
 
 
 def _transfer_function(page: Builder, design: MinimalOrderCompensator, *, large: bool) -> None:
     """Write F(s) = K₂ (sI − A_c)⁻¹ B_c + K_y, times W where the output contains the input."""
     K_y, K_2, B_c = (page[name] for name in ("K_y", "K_2", "B_c"))
-    pencil = page.s @ page.identity(page.plant.order - page.plant.outputs) - page["A_c"]
-    formula = K_2 @ pencil.inverse @ B_c + K_y
+    pencil = page["s I - A_c"]
+    formula = page["K_2 (s I - A_c)^-1 B_c + K_y"]
     if page.plant.matrices.has_feedthrough:
         formula = page["W_u"] @ formula
-    direct = page["W_u"] @ K_y if page.plant.matrices.has_feedthrough else K_y
+    direct = page["W_u K_y"] if page.plant.matrices.has_feedthrough else K_y
     if not design.is_single:
         define_or_hold(page, "F", formula, design.answer["F"], "minimal_transfer")
     elif large:
@@ -206,32 +208,28 @@ def _transfer_function(page: Builder, design: MinimalOrderCompensator, *, large:
 
 def _error_coordinates(page: Builder, design: MinimalOrderCompensator, *, large: bool) -> None:
     """Write u = −Kx + K₂e₂, ẋ = (A − BK) x + BK₂e₂, block triangular; and the same in (x, z)."""
-    A, B, C, K, F, K_2, K_y = (page[name] for name in ("A", "B", "C", "K", "F_z", "K_2", "K_y"))
-    x, e, z, order = page["x"], page["e_2"], page[observer_state(page)], page.plant.order
-    control = relation(page["u"], -K @ x + K_2 @ e)
-    rate = relation(x.derivative, (A - B @ K) @ x + B @ K_2 @ e)
+    z, order = page[observer_state(page)], page.plant.order
+    control = page.line("u = (-K) x + K_2 e_2")
+    rate = page.line("x' = (A - B K) x + B K_2 e_2")
     estimated = order - page.plant.outputs
     zero = page.value(Matrix.zeros(estimated, order))
-    matrix, sizes = block([[A - B @ K, B @ K_2], [zero, F]]), [order, estimated]
+    matrix, sizes = page("[A - B K, B K_2; {zero}, F_z]", zero=zero), [order, estimated]
     numbers = [in_blocks(page, matrix.value, sizes, sizes)] if not large and is_narrow(matrix.value) else []
     page.define("A_cl", matrix, *numbers, say="closed_loop_matrix", closing=False, control=control, rate=rate)
-    state = block([[x], [e]])
-    page.equal(relation(state.derivative, page["A_cl"] @ state))
-    determinant = (page.s @ page.identity(order + estimated) - page["A_cl"]).apply("det")
-    parts = FEEDBACK.error_determinant(page) @ (page.s @ page.identity(estimated) - F).apply("det")
+    page.equal("[x; e_2]' = A_cl [x; e_2]")
+    determinant = page["det(s I - A_cl)"]
+    parts = page("{value} det(s I - F_z)", value=FEEDBACK.error_determinant(page))
     product = page.term(formula_of_factored(design.loop_polynomial))
     page.equal(relation(determinant, parts, product), say=f"polynomial_splits{of_given(design)}")
     caution_unstable_loop(page, design, determinant)
-    H, G = page["H_z"], page["G_z"]
-    driven = G + H @ page["D"] if page.plant.matrices.has_feedthrough else G
-    second = block([[A - B @ K_y @ C, -(B @ K_2)], [(H - driven @ K_y) @ C, F - driven @ K_2]])
-    states = block([[x], [z]])
+    G = page["G_z"]
+    driven = page["G_z + H_z D"] if page.plant.matrices.has_feedthrough else G
+    second = page("[A - B K_y C, -B K_2; (H_z - {driven} K_y) C, F_z - {driven} K_2]", driven=driven)
+    states = page("[x; {z}]", z=z)
     is_written = not large and order <= readability.WRITTEN_OUT_ORDER and is_narrow(second.value)
     numbers = [in_blocks(page, second.value, sizes, sizes) @ states] if is_written else []
     page.equal(relation(states.derivative, second @ states, *numbers), say="reduced_coordinates")
-    plot_estimate(
-        page, "e_2", page["A_cl"], (page["T"].inverse.value).select(range(order), range(order - estimated, order))
-    )
+    plot_estimate(page, "e_2", page["A_cl"], (page["T^-1"].value).select(range(order), range(order - estimated, order)))
 
 
 def _plain(page: Builder, term: Term) -> Term:

@@ -16,7 +16,7 @@ from symobs.proof.certificate.claims import Certificate, Claim, check
 from symobs.proof.derivation.builder import predicate, relation
 from symobs.stability.criteria.stability import monic, no_stable_compensator, stability, stable_somewhere
 from symobs.stability.inequalities.simplify import as_inequality
-from symobs.system.conditions import sign_of, vanishing_factors
+from symobs.system.conditions import Condition, sign_of, vanishing_factors
 from symobs.tasks.analysis.page_parts import cancelled, over
 from symobs.tasks.analysis.strata.strata import places, solved
 from symobs.tasks.design.gain.gain_cases import places_where
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from symobs.exact import Root
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
-    from symobs.system.conditions import Condition
     from symobs.system.specification import DesiredPolynomial
     from symobs.tasks.analysis.strata.strata import Place
     from symobs.tasks.design.full_order.observer import ObserverDesign
@@ -41,8 +40,6 @@ if TYPE_CHECKING:
 
 #: What one half of a compensator is asked for by: its polynomial, or its gain.
 Asked: TypeAlias = "DesiredPolynomial | Matrix"
-
-
 #: The Hurwitz determinants of a compensator with more terms than this take seconds, and only points are tried.
 _DECIDABLE_TERMS = 400
 
@@ -51,6 +48,7 @@ _DECIDABLE_TERMS = 400
 _OF_A_LOOP = (
     "F_stable",
     "F_stable_if",
+    "F_cancels_where",
     "closed_loop_polynomial",
     "closed_loop",
     "closed_loop_matrix",
@@ -60,7 +58,7 @@ _OF_A_LOOP = (
 
 #: What follows from K, L and F, and the property that finds it.
 _FOUND = {
-    "F_stable": "own_stability", "F_stable_if": "own_stability_where",
+    "F_stable": "own_stability", "F_stable_if": "own_stability_where", "F_cancels_where": "cancellations",
     "compensator_stable": "law_stability", "compensator_matrix": "own_matrix",
     "closed_loop_polynomial": "loop_polynomial", "closed_loop": "loop", "closed_loop_unity": "unity_loop",
     "closed_loop_matrix": "error_coordinates", "closed_loop_matrix_estimate": "estimate_coordinates", "family": "families",
@@ -375,6 +373,15 @@ class OutputFeedback(Result):
         return found.inequalities(signs) or None
 
     @cached_property
+    def cancellations(self) -> tuple[Condition, ...] | None:
+        """Where numerator and denominator of F have a common root, so that its poles are others than in general."""
+        F, variable, signs = self.answer["F"], self.plant.variable, self.plant.symbols.signs
+        if self.own_stability != "conditional" or not isinstance(F, Scalar) or F.size > _DECIDABLE_TERMS:
+            return None
+        met = resultant(F.numerator, F.denominator, variable) if F.degree(variable) > 0 else F.numerator
+        return tuple(Condition("case", factor, "==") for factor in vanishing_factors([met], signs)) or None
+
+    @cached_property
     def law_stability(self) -> str:
         """Whether the compensator by itself is stable, with the modes that F does not show."""
         return law_stability(self.answer["F"], self.own_matrix, self.plant, self.own_stability)
@@ -457,8 +464,6 @@ def _factors_of(design: GainDesign | ReducedOrderObserver) -> tuple[tuple[Scalar
 
 #: A polynomial of more terms is not decided.
 _TERMS = 400
-
-
 #: The most inputs, or outputs, from all of whose minors the poles of F are found.
 _MOST = 3
 
@@ -501,7 +506,7 @@ def caution_hidden(page: Builder, F: Matrix | Scalar, own_matrix: Matrix) -> Non
     hidden_stability = stability(hidden, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
     if hidden_stability.verdict == "yes":
         return
-    own = page["A_c"].pencil.apply("det")
+    own = page["det(pencil(A_c))"]
     rest = page.term(Quotient(own.formula, Literal(monic(poles, plant.variable))))
     if rest.value != hidden:
         return

@@ -30,8 +30,10 @@ from symobs.tasks.design.gain.gain_cases import design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
 from symobs.tasks.design.gain.gain_page import say_as_required
-from symobs.tasks.design.page_parts import caution_poles, define_gain, say_unassignable
-from symobs.tasks.result import Case, Result, choose, equality, method, page_of, poles_of, task
+from symobs.tasks.design.named_gains import define_gain
+from symobs.tasks.design.pole_cautions import caution_poles
+from symobs.tasks.design.unassignable import say_unassignable
+from symobs.tasks.result import Case, Result, choose, equality, holds, method, page_of, poles_of, task
 from symobs.tasks.result.control_systems import Controller
 
 if TYPE_CHECKING:
@@ -115,14 +117,14 @@ class DisturbanceObserver(Result):
         e = Environment(variable=plant.variable, values=values | gains)
         whole = block(extended(e, plant, self.exosystem))
         yield equality(whole, self.inner.plant.matrices.A, e, "the inner observer is one for A_hat")
-        yield equality(e["phi"], self.desired.polynomial, e, "the polynomial is the one asked for")
+        yield holds(e, "phi = {polynomial}", "the polynomial is the one asked for", polynomial=self.desired.polynomial)
         if L_x is not None:
             both = block([[e["L_x"]], [e["L_w"]]])
             yield equality(both, self.inner.answer["L"], e)
             seen = block([[e["L_x"] @ e["C"]], [e["L_w"] @ e["C"]]])
             wide = Matrix.block([[Matrix.identity(plant.order), Matrix.zeros(plant.order, self.exosystem.order)]])
             pencil = whole.pencil + seen @ Term(Literal(wide), e)
-            yield equality(pencil.apply("det"), e["phi"], e)
+            yield holds(e, "{det} = phi", det=pencil.apply("det"))
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:
@@ -297,15 +299,14 @@ def _together(page: Builder, design: DisturbanceObserver) -> None:
     _, S, V = design.exosystem
     page.set("S_w", S)
     page.set("V_w", V)
-    w = page["w_e"]
-    page.dynamics("w_e", page["S_w"] @ w, silent=True)
-    page.signal("d", page["V_w"] @ w, silent=True)
+    page.dynamics("w_e", "S_w w_e", silent=True)
+    page.signal("d", "V_w w_e", silent=True)
     if _is_constant(design):
-        generated = [relation(w.derivative, page["S_w"] @ w), relation(page["S_w"], S)]
-        page.equal(*generated, relation(page["d"], w), say="disturbance_constant")
+        generated = [page.line("w_e' = S_w w_e"), relation(page["S_w"], S)]
+        page.equal(*generated, "d = w_e", say="disturbance_constant")
     else:
-        generated = [relation(w.derivative, page["S_w"].as_value @ w)]
-        page.equal(*generated, relation(page["d"], page["V_w"].as_value @ w), say="disturbance_model")
+        generated = [page.line("w_e' = #S_w w_e")]
+        page.equal(*generated, "d = #V_w w_e", say="disturbance_model")
     write_both_together(page, design)
 
 
@@ -313,14 +314,14 @@ def write_both_together(page: Builder, design: DisturbanceObserver) -> None:
     """Write plant and exosystem as one system."""
     plant, m, S = page.plant, page.plant.matrices, design.exosystem.S
     name_extended(page, design)
-    state = block([[page["x"]], [page["w_e"]]])
-    rate, seen = page["A_hat"] @ state, page["C_hat"] @ state
+    state = page["[x; w_e]"]
+    rate, seen = page["A_hat [x; w_e]"], page["C_hat [x; w_e]"]
     if m.has_input:
         below = page.value(Matrix.zeros(S.shape[0], plant.inputs))
-        page.define("B_hat", block([[page["B"]], [below]]))
-        rate = page["A_hat"] @ state + page["B_hat"] @ page["u"]
-    seen = page["C_hat"] @ state
-    seen = seen + page["D"] @ page["u"] if m.has_feedthrough else seen
+        page.define("B_hat", page("[B; {below}]", below=below))
+        rate = page["A_hat [x; w_e] + B_hat u"]
+    seen = page["C_hat [x; w_e]"]
+    seen = page("{seen} + D u", seen=seen) if m.has_feedthrough else seen
     page.equal(relation(state.derivative, rate), relation(page["y"], seen), say="disturbance_together")
 
 
@@ -329,7 +330,7 @@ def name_extended(page: Builder, design: DisturbanceObserver, *, silent: bool = 
     outputs, order = page.plant.outputs, design.exosystem.order
     whole = block(extended(page.environment, page.plant, design.exosystem))
     page.define("A_hat", whole, say="" if silent else "disturbance_extended", silent=silent)
-    page.define("C_hat", block([[page["C"], page.value(Matrix.zeros(outputs, order))]]), silent=silent)
+    page.define("C_hat", page("[C, {order}]", order=Matrix.zeros(outputs, order)), silent=silent)
 
 
 def _is_constant(design: DisturbanceObserver) -> bool:
@@ -354,17 +355,17 @@ def write_gain_of_both(page: Builder, design: DisturbanceObserver) -> None:
         _zeros(page, design)
     else:
         page.set("N", pair.kernel)
-        X = page.set("X", pair.restricted)
-        fixed = X.pencil.apply("det")
+        page.set("X", pair.restricted)
+        fixed = page["det(pencil(X))"]
         roots = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, plant.variable))
         if design.answer["L_x"] is None:
             keys, polynomial = ("disturbance_impossible", "disturbance_unassignable"), design.desired.polynomial
             say_unassignable(page, keys, page["phi_o"], polynomial, fixed, design.case_tree, modes=roots)
             _zeros(page, design)
             return
-        page.conclude("disturbance_fixed", predicate("polynomial", page["phi_o"] / fixed), modes=roots)
+        page.conclude("disturbance_fixed", predicate("polynomial", page["phi_o / det(pencil(X))"]), modes=roots)
     L = define_gain(page, "L", design.inner.answer["L"], say="disturbance_gain")
-    pencil = (A.pencil + L @ C).apply("det")
+    pencil = page("det(pencil(A_hat) + {L} C_hat)", L=L)
     say_as_required(page, design.desired, pencil, page.value(design.desired.polynomial))
     caution_poles(page, design.desired, "phi_o", "observer")
     if not design.desired.is_numeric:
@@ -375,56 +376,54 @@ def write_gain_of_both(page: Builder, design: DisturbanceObserver) -> None:
 
 def _zeros(page: Builder, design: DisturbanceObserver) -> None:
     """Say what observability of plant and exosystem means for the zeros of the plant from d to y."""
-    plant, A, C, E = page.plant, page["A"], page["C"], page["E_d"]
+    plant, A, E = page.plant, page["A"], page["E_d"]
     q, n = E.value.shape[1], plant.order
     if not _is_constant(design):
         if q == 1 and design.inner.pair.is_observable:
             page.remark("disturbance_zeros_model")
         return
-    first = A - page.identity(n) if plant.is_discrete else A
-    whole = block([[first, E], [C, page.value(Matrix.zeros(plant.outputs, q))]])
+    first = page["A - I"] if plant.is_discrete else A
+    whole = page("[{first}, E_d; C, {q}]", first=first, q=Matrix.zeros(plant.outputs, q))
     found, place = rank(whole.value, plant.ideal), "one" if plant.is_discrete else "origin"
     if design.inner.pair.is_observable:
         page.remark(f"disturbance_zeros_{place}", rank=relation(whole.apply("rank"), n + q))
     elif (
-        q <= plant.outputs and found < n + q and rank(block([[first], [C]]).value, plant.ideal) == n
+        q <= plant.outputs and found < n + q and rank(page("[{first}; C]", first=first).value, plant.ideal) == n
     ):  # so that d is not 0 in its kernel
         page.remark(f"disturbance_blocked_{place}", rank=relation(whole.apply("rank"), found, "<", n + q))
 
 
 def _observer(page: Builder, design: DisturbanceObserver) -> None:
     """Write the observer, the estimate of the disturbance, and the error equation."""
-    estimate = page["V_w"] @ page["w_hat"]
+    estimate = page["V_w w_hat"]
     page.signal("d_hat", estimate, silent=True)
-    shown = relation(page["d_hat"], estimate, page["V_w"].as_value @ page["w_hat"])
-    write_observer_of_both(page, design, page["E_d"] @ estimate, shown, say="disturbance_equation")
+    shown = page.line("d_hat = V_w w_hat = #V_w w_hat")
+    write_observer_of_both(page, design, page["E_d V_w w_hat"], shown, say="disturbance_equation")
 
 
 def write_observer_of_both(
     page: Builder, design: DisturbanceObserver, driven: Term, *shown: Relation, say: str
 ) -> None:
     """Write the observer of plant and exosystem, where E d̂ drives the estimate, and the error equation."""
-    L, C_hat, A_hat = page["L"], page["C_hat"], page["A_hat"]
+    L, A_hat = page["L"], page["A_hat"]
     for name, value in (("L_x", design.answer["L_x"]), ("L_w", design.answer["L_w"])):
         page.set(name, value)
-    page.conclude_silently(relation(page["L"], block([[page["L_x"]], [page["L_w"]]])))
+    page.conclude_silently("L = [L_x; L_w]")
     model, innovation = model_and_innovation(page)
-    w_hat = page["w_hat"]
     page.dynamics("x_hat", model + driven + page["L_x"] @ innovation, silent=True)
-    page.dynamics("w_hat", page["S_w"] @ w_hat + page["L_w"] @ innovation, silent=True)
-    state = block([[page["x_hat"]], [w_hat]])
+    page.dynamics("w_hat", page("S_w w_hat + L_w {innovation}", innovation=innovation), silent=True)
+    state = page["[x_hat; w_hat]"]
     rate = A_hat @ state
-    left = page["y"] - C_hat @ state
+    left = page["y - C_hat [x_hat; w_hat]"]
     if page.plant.matrices.has_input:
-        rate = rate + page["B_hat"] @ page["u"]
-        left = left - page["D"] @ page["u"] if page.plant.matrices.has_feedthrough else left
+        rate = page("{rate} + B_hat u", rate=rate)
+        left = page("{left} - D u", left=left) if page.plant.matrices.has_feedthrough else left
     page.equal(relation(state.derivative, rate + L @ left), *shown, say=say)
-    page.signal("e", page["x"] - page["x_hat"], silent=True)
-    page.signal("e_w", page["w_e"] - w_hat, silent=True)
-    error, closed = block([[page["e"]], [page["e_w"]]]), page["A_hat"] - L @ C_hat
-    both = (relation(page["e"], page["x"] - page["x_hat"]), relation(page["e_w"], page["w_e"] - w_hat))
+    page.signal("e", "x - x_hat", silent=True)
+    page.signal("e_w", "w_e - w_hat", silent=True)
+    both = (page.line("e = x - x_hat"), page.line("e_w = w_e - w_hat"))
     page.equal(
-        relation(error.derivative, closed @ error, closed.as_value @ error),
+        "[e; e_w]' = (A_hat - L C_hat) [e; e_w] = #(A_hat - L C_hat) [e; e_w]",
         say="disturbance_error",
         state=both[0],
         other=both[1],

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.exact import Matrix, Scalar, independent_rows, kernel, modulo, roots_of
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment, Roots
-from symobs.formula.tree.term import block, identity
+from symobs.formula.tree.term import block
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
-from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.stability.criteria.stability import stability
 from symobs.system import StateSpace
@@ -26,27 +25,24 @@ from symobs.tasks.analysis.page_parts import case_steps, given, is_narrow, say_s
 from symobs.tasks.analysis.rank.rank_page import assume_rank
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import common_places, found_once, solved
+from symobs.tasks.design.components import combination, stand_in_line, summed
 from symobs.tasks.design.disturbance.disturbance_input import read_disturbance_input, with_disturbance
+from symobs.tasks.design.error_plots import plot_error
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_page import say_as_required
-from symobs.tasks.design.page_parts import (
-    caution_poles,
-    combination,
-    define_gain,
-    plot_error,
-    say_unassignable,
-    stand_in_line,
-    summed,
-)
-from symobs.tasks.result import Case, Result, choose, equality, method, page_of, task
+from symobs.tasks.design.named_gains import define_gain
+from symobs.tasks.design.pole_cautions import caution_poles
+from symobs.tasks.design.unassignable import say_unassignable
+from symobs.tasks.result import Case, Result, choose, equality, holds, method, page_of, task
 from symobs.tasks.result.control_systems import Controller, observer_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.formula.tree.term import Term
+    from symobs.proof.certificate.claims import Certificate, Claim
     from symobs.system.conditions import Condition
     from symobs.system.specification import MatrixText, Name, Poles, PolynomialText
     from symobs.tasks.analysis.strata.strata import Place
@@ -163,31 +159,29 @@ class UnknownInputObserver(Result):
         values = letters_of(plant) | {"E_d": self.disturbance_input, "phi": answer["polynomial"]}
         known = {name: value for name, value in answer.items() if value is not None}
         e = Environment(variable=plant.variable, values=values | known)
-        A, C, E = (e[name] for name in ("A", "C", "E_d"))
-        yield equality(e["phi"], self.desired.polynomial, e, "the polynomial is the one asked for")
+        A, C = e["A"], e["C"]
+        yield holds(e, "phi = {polynomial}", "the polynomial is the one asked for", polynomial=self.desired.polynomial)
         if inner is None:
-            w = e["w"]
-            yield equality(C @ E @ w, Matrix.zeros(plant.outputs, 1), e)
-            yield Claim(relation(E @ w, "!==", Matrix.zeros(plant.order, 1)), e)
+            yield holds(e, "C E_d w = 0")
+            yield holds(e, "E_d w !== 0")
             return
-        H, T = e["H"], e["T"]
-        yield equality((H @ C - identity(plant.order, e)) @ E, Matrix.zeros(*self.disturbance_input.shape), e)
-        yield equality(T, identity(plant.order, e) - H @ C, e)
+        T = e["T"]
+        yield holds(e, "(H C - I) E_d = 0")
+        yield holds(e, "T = I - H C")
         yield equality(T @ A, inner.plant.matrices.A, e, "the inner gain is one for T*A")
         yield equality(C, inner.plant.matrices.C, e, "the inner gain is one for C")
-        yield equality(e["phi"], inner.answer["polynomial"], e, "the inner gain is one for phi(s)")
+        yield holds(e, "phi = {polynomial}", "the inner gain is one for phi(s)", polynomial=inner.answer["polynomial"])
         if answer["L"] is None:
             return
-        L, F, B_y = (e[name] for name in ("L", "F", "B_y"))
-        yield equality(F, T @ A - L @ C, e)
-        yield equality(B_y, L + F @ H, e)
-        yield equality(T @ A - F @ T, B_y @ C, e)
+        B_y = e["B_y"]
+        yield holds(e, "F = T A - L C")
+        yield holds(e, "B_y = L + F H")
+        yield holds(e, "T A - F T = B_y C")
         if answer["B_u"] is not None:
             driven = T @ e["B"]
             driven = driven - B_y @ e["D"] if m.has_feedthrough else driven
-            yield equality(e["B_u"], driven, e)
-        pencil = F.pencil
-        yield equality(pencil.apply("det"), e["phi"], e)
+            yield holds(e, "B_u = {driven}", driven=driven)
+        yield holds(e, "det(pencil(F)) = phi")
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:
@@ -368,16 +362,15 @@ def _case(page: Builder, design: UnknownInputObserver) -> None:
     conditions = [c.expression for c in design.holds_where if c.kind != "domain"]
     if conditions:
         page.assume("uio_provided", *conditions)
-    H, C, identity = page.set("H_d", design.answer["H"]), page["C"], page.identity(page.plant.order)
-    page.conclude_silently(relation((H @ C - identity) @ page["E_d"], Matrix.zeros(*design.disturbance_input.shape)))
-    T = page.define("T_d", identity - H @ C, silent=True)
-    page.define("A_T", T @ page["A"], silent=True)
+    _H, C, _identity = page.set("H_d", design.answer["H"]), page["C"], page.identity(page.plant.order)
+    page.conclude_silently("(H_d C - I) E_d = 0")
+    page.define("T_d", "I - H_d C", silent=True)
+    page.define("A_T", "T_d A", silent=True)
     _zeros(page, design)
     if design.answer["L"] is not None:
         L = define_gain(page, "L", design.answer["L"])
         page.define("F_d", page["A_T"] - L @ C, silent=True)
-        pencil = (page.s @ identity - page["F_d"]).apply("det")
-        page.conclude_silently(relation(pencil, page.value(design.desired.polynomial)))
+        page.conclude_silently(page.line("det(s I - F_d) = {polynomial}", polynomial=design.desired.polynomial))
 
 
 def _design(page: Builder, design: UnknownInputObserver) -> None:
@@ -397,7 +390,7 @@ def _independent(page: Builder, design: UnknownInputObserver) -> Term:
     found = independent_columns(design.disturbance_input, design.plant.ideal)
     if found.shape[1] == design.disturbance_input.shape[1] or not found.shape[1]:
         return page["E_d"]
-    rank = relation(page["E_d"].apply("rank"), found.shape[1])
+    rank = page.line("rank(E_d) = {shape}", shape=found.shape[1])
     return page.define("E_1", page.value(found), say="uio_independent", closing=False, rank=rank)
 
 
@@ -407,7 +400,7 @@ def _not_decoupled(page: Builder, design: UnknownInputObserver) -> None:
     unseen, direction = C @ E, E
     if design.disturbance_input.shape[1] > 1:
         w = page.set("w_0", design.answer["w"])
-        page.equal(relation(w, w.as_value), say="uio_direction")
+        page.equal("w_0 = #", say="uio_direction")
         C, E = page["C"], page["E_d"]
         unseen, direction, along = C @ E @ w, E @ w, "_along"
     zero, nothing = (Matrix.zeros(size, 1) for size in (page.plant.outputs, page.plant.order))
@@ -433,12 +426,9 @@ def _decoupled(page: Builder, design: UnknownInputObserver, E: Term) -> None:
         square = seen.value.shape[0] == count
         left = seen.inverse if square else (seen.T @ seen).inverse @ seen.T
         page.define("H_d", E @ left, say="uio_output_matrix", answer=True)
-        H_d, identity = page["H_d"], page.identity(page.plant.order)
-        page.conclude_silently(
-            relation((H_d @ C - identity) @ page["E_d"], Matrix.zeros(*design.disturbance_input.shape))
-        )
-    T = page.define("T_d", page.identity(page.plant.order) - page["H_d"] @ C, say="uio_projection")
-    page.define("A_T", T @ page["A"])
+        page.conclude_silently("(H_d C - I) E_d = 0")
+    page.define("T_d", "I - H_d C", say="uio_projection")
+    page.define("A_T", "T_d A")
 
 
 def _zeros(page: Builder, design: UnknownInputObserver) -> None:
@@ -451,11 +441,11 @@ def _zeros(page: Builder, design: UnknownInputObserver) -> None:
         page.conclude("uio_observable", rank=relation(tested.apply("rank"), plant.order))
         return
     page.set("N", pair.kernel)
-    X = page.set("X", pair.restricted)
-    fixed = X.pencil.apply("det")
+    page.set("X", pair.restricted)
+    fixed = page["det(pencil(X))"]
     zeros = Roots(fixed.formula, roots_of(design.inner.fixed_polynomial, plant.variable))
     if design.answer["L"] is not None:
-        page.conclude("uio_zeros_desired", predicate("polynomial", page["phi_o"] / fixed), zeros=zeros)
+        page.conclude("uio_zeros_desired", predicate("polynomial", page["phi_o / det(pencil(X))"]), zeros=zeros)
         return
     keys, polynomial = ("uio_impossible", "uio_unassignable"), design.desired.polynomial
     say_unassignable(page, keys, page["phi_o"], polynomial, fixed, design.case_tree, zeros=zeros)
@@ -470,14 +460,14 @@ def _zeros(page: Builder, design: UnknownInputObserver) -> None:
 def _gain(page: Builder, design: UnknownInputObserver) -> None:
     """Write L, F = T A − L C, and what multiplies y in the equation of z."""
     L = define_gain(page, "L", design.answer["L"], say="uio_gain")
-    state = page["A_T"] - L @ page["C"]
+    state = page("A_T - {L} C", L=L)
     driven = L + state @ page["H_d"]
     is_short = is_narrow(Matrix.block([[state.value, driven.value]]))  # then the observer has the values
     shown = [[] if is_short else [spread(page, part.value)] for part in (state, driven)]
-    F = page.define("F_d", state, *shown[0], say="uio_state_matrix", closing=False)
-    page.define("L_y", page["L"] + F @ page["H_d"], *shown[1], closing=False)
+    page.define("F_d", state, *shown[0], say="uio_state_matrix", closing=False)
+    page.define("L_y", "L + F_d H_d", *shown[1], closing=False)
     page.conclude_silently(*(relation(page[name], design.answer[of]) for name, of in _LETTERS.items()))
-    pencil, asked = F.pencil.apply("det"), design.desired
+    pencil, asked = page["det(pencil(F_d))"], design.desired
     say_as_required(page, asked, pencil, page.value(asked.polynomial))
     caution_poles(page, asked, "phi_o", "observer")
     if not asked.is_numeric:
@@ -494,30 +484,31 @@ def _observer(page: Builder, design: UnknownInputObserver) -> None:
     """Write the observer, and that its error does not depend on u and d."""
     m, name = page.plant.matrices, "w_o" if page.plant.is_discrete else "z_o"
     z = page[name]
-    C, E, F, H, T, B_y, x, y = (page[letter] for letter in ("C", "E_d", "F_d", "H_d", "T_d", "L_y", "x", "y"))
+    F, B_y, y = (page[letter] for letter in ("F_d", "L_y", "y"))
     pairs = [(F, z)]
     known = y
     if m.has_input:
-        driven = T @ page["B"] - B_y @ page["D"] if m.has_feedthrough else T @ page["B"]
+        driven = page["T_d B - L_y D"] if m.has_feedthrough else page["T_d B"]
         pairs.append((driven, page["u"]))
-        known = y - page["D"] @ page["u"] if m.has_feedthrough else y
+        known = page["y - D u"] if m.has_feedthrough else y
         page.conclude_silently(relation(driven, design.answer["B_u"]))
     pairs.append((B_y, y))
     page.dynamics(name, summed(pairs), silent=True)
-    page.signal("x_hat", z + H @ C @ x, silent=True)  # y − D u, whose parts D u have no derivatives that are known
+    page.signal(
+        "x_hat", f"{name} + H_d C x", silent=True
+    )  # y − D u, whose parts D u have no derivatives that are known
     page.equal(
         relation(
             z.derivative, summed(pairs), *([combination(page, pairs)] if stand_in_line(page, "F_d", "L_y") else [])
         ),
-        relation(page["x_hat"], z + H @ known, z + H.as_value @ known),
+        page.line(f"x_hat = {name} + H_d {{known}} = {name} + #H_d {{known}}", known=known),
         say="uio_observer",
         answer=True,
     )
-    page.signal("e", x - page["x_hat"], silent=True)
-    error = relation(page["e"], x - page["x_hat"], T @ x - z)
-    rate = F @ page["e"]
+    page.signal("e", "x - x_hat", silent=True)
+    error = page.line(f"e = x - x_hat = T_d x - {name}")
     page.equal(
-        relation(page["e"].derivative, rate + T @ E @ page["d"], rate),
+        "e' = F_d e + T_d E_d d = F_d e",
         say="uio_error",
         error=error,
     )

@@ -11,10 +11,12 @@ from symobs.ground.dataclass import dataclass
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.tasks.analysis.page_parts import given, spread
 from symobs.tasks.analysis.rank.observability import Observability
+from symobs.tasks.design.block_diagrams import draw_collected, draw_copy
+from symobs.tasks.design.components import write_components
+from symobs.tasks.design.error_plots import plot_error
 from symobs.tasks.design.full_order.placement_methods import register_methods
 from symobs.tasks.design.gain.gain_design import OBSERVER, GainDesign, design_gain, page_style
 from symobs.tasks.design.gain.gain_page import write_cases, write_gain
-from symobs.tasks.design.page_parts import draw_collected, draw_copy, plot_error, write_components
 from symobs.tasks.design.pole_placement.multiple_outputs import pair_of
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
 from symobs.tasks.result import Case, Result, task
@@ -41,38 +43,37 @@ def write_ansatz(page: Builder, gain: Matrix) -> None:
     undetermined(page, "H_x", "h_", gain)
     if m.has_input:
         undetermined(page, "G_x", "g_", (m.B - gain @ m.D).normal() if m.has_feedthrough else m.B)
-    A, C, F, H = (page[name] for name in ("A", "C", "F_x", "H_x"))
-    model = F @ page["x_hat"]
+    model = page["F_x x_hat"]
     if m.has_input:
-        model = model + page["G_x"] @ page["u"]
-    page.dynamics("x_hat", model + H @ page["y"], say="existence_ansatz")
-    page.signal("e", page["x"] - page["x_hat"], silent=True)
-    moving = (A - H @ C) @ page["x"] - F @ page["x_hat"]
-    choice = [relation(F, A - H @ C)]
+        model = page("{model} + G_x u", model=model)
+    page.dynamics("x_hat", model + page["H_x y"], say="existence_ansatz")
+    page.signal("e", "x - x_hat", silent=True)
+    moving = page["(A - H_x C) x - F_x x_hat"]
+    choice = [page.line("F_x = A - H_x C")]
     if m.has_input:
-        wanted: Term = page["B"] - H @ page["D"] if m.has_feedthrough else page["B"]
-        moving = moving + (wanted - page["G_x"]) @ page["u"]
+        wanted: Term = page["B - H_x D"] if m.has_feedthrough else page["B"]
+        moving = page("{moving} + ({wanted} - G_x) u", moving=moving, wanted=wanted)
         choice.insert(0, relation(page["G_x"], wanted))
     page.equal(
-        relation(page["e"].derivative, moving),
+        page.line("e' = {moving}", moving=moving),
         say="existence_error",
-        error=relation(page["e"], page["x"] - page["x_hat"]),
+        error=page.line("e = x - x_hat"),
     )
     page.equal(*choice, say="existence_choice")
-    page.equal(relation(page["e"].derivative, (A - H @ C) @ page["e"]), say="existence_left")
+    page.equal("e' = (A - H_x C) e", say="existence_left")
 
 
 def write_found(page: Builder) -> None:
     """Write the observer with the matrices found."""
-    m, L = page.plant.matrices, page["L"]
-    page.conclude_silently(relation(page["H_x"], L))
-    closed = page["A"] - L @ page["C"]
-    collected, numbers = closed @ page["x_hat"], spread(page, closed.value) @ page["x_hat"]
+    m = page.plant.matrices
+    page.conclude_silently("H_x = L")
+    closed = page["A - L C"]
+    collected, numbers = page["(A - L C) x_hat"], spread(page, closed.value) @ page["x_hat"]
     if m.has_input:
-        driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
+        driven = page["B - L D"] if m.has_feedthrough else page["B"]
         collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
     page.equal(
-        relation(page["x_hat"].derivative, collected + L @ page["y"], numbers + L.as_value @ page["y"]),
+        page.line("x_hat' = {collected} + L y = {numbers} + #L y", collected=collected, numbers=numbers),
         say="existence_observer",
         answer=True,
     )
@@ -179,7 +180,7 @@ class ObserverDesign(GainDesign):
                 write_observer(page, drawn=True)
             if self.answer["L"] is not None:
                 draw_collected(page)
-                plot_error(page, "e", page["A"] - page["L"] @ page["C"])
+                plot_error(page, "e", page["A - L C"])
             write_cases(page, self, OBSERVER)
 
 
@@ -189,8 +190,8 @@ def model_and_innovation(page: Builder) -> tuple[Term, Term]:
     A, C, x_hat, y = (page[name] for name in ("A", "C", "x_hat", "y"))
     model, predicted = A @ x_hat, C @ x_hat
     if m.has_input:
-        model = model + page["B"] @ page["u"]
-    return model, y - predicted - page["D"] @ page["u"] if m.has_feedthrough else y - predicted
+        model = page("{model} + B u", model=model)
+    return model, page["y - C x_hat - D u"] if m.has_feedthrough else y - predicted
 
 
 def write_observer(page: Builder, *, drawn: bool = False, alone: bool = True) -> None:
@@ -199,27 +200,27 @@ def write_observer(page: Builder, *, drawn: bool = False, alone: bool = True) ->
     `alone`, it is the answer, and its components are written out; else it is a part of a compensator.
     """
     m = page.plant.matrices
-    A, C, L, x_hat, y = (page[name] for name in ("A", "C", "L", "x_hat", "y"))
+    L, x_hat = page["L"], page["x_hat"]
     model, innovation = model_and_innovation(page)
     page.dynamics("x_hat", model + L @ innovation, say="observer_equation")
     if drawn:
         draw_copy(page)
-    page.signal("e", page["x"] - page["x_hat"], silent=True)
-    closed = A - L @ C
-    rate = A @ page["x"] + page["B"] @ page["u"] if m.has_input else A @ page["x"]
+    page.signal("e", "x - x_hat", silent=True)
+    closed = page["A - L C"]
+    rate = page["A x + B u"] if m.has_input else page["A x"]
     if m.has_feedthrough:
-        page.equal(relation(innovation, C @ page["e"]), say="feedthrough_cancels")
+        page.equal(page.line("{innovation} = C e", innovation=innovation), say="feedthrough_cancels")
     is_collected = alone or m.has_feedthrough  # then A − LC is written out there
-    members = [rate - (model + L @ innovation), closed @ page["e"]]
+    members = [rate - (model + L @ innovation), page["(A - L C) e"]]
     members += [] if is_collected else [spread(page, closed.value) @ page["e"]]
-    error = relation(page["e"], page["x"] - page["x_hat"])
-    page.equal(relation(page["e"].derivative, *members), say="error_equation", error=error)
+    error = page.line("e = x - x_hat")
+    page.equal(relation(page["e'"], *members), say="error_equation", error=error)
     _say_deadbeat(page, closed)
     collected, numbers, driven = closed @ x_hat, spread(page, closed.value) @ x_hat, None
     if m.has_input:
-        driven = page["B"] - L @ page["D"] if m.has_feedthrough else page["B"]
+        driven = page["B - L D"] if m.has_feedthrough else page["B"]
         collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
-    whole = relation(x_hat.derivative, collected + L @ y, numbers + L.as_value @ y)
+    whole = page.line("x_hat' = {collected} + L y = {numbers} + #L y", collected=collected, numbers=numbers)
     if not is_collected:
         page.conclude_silently(whole)
         return

@@ -6,14 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
-from symobs.tasks.design.gain.gain_page import (
-    write_ackermann,
-    write_canonical,
-    write_companion,
-    write_matching,
-    write_member,
-    write_reduction,
-)
+from symobs.tasks.design.gain.gain_page import write_ackermann, write_member, write_reduction
+from symobs.tasks.design.gain.gain_ways_page import write_canonical, write_companion, write_matching
 from symobs.tasks.design.pole_placement.row_reduction import reduced_gain
 from symobs.tasks.design.pole_placement.single_output import canonical_gain, companion_gain, matched_gain
 from symobs.tasks.design.pole_placement.sylvester import SYLVESTER

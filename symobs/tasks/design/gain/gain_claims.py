@@ -11,7 +11,7 @@ from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
 from symobs.tasks.design.pole_placement.zero_pattern import with_zeros
-from symobs.tasks.result import equality
+from symobs.tasks.result import equality, holds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -28,13 +28,11 @@ def unassignable_claims(pair: ObserverPair, polynomial: Scalar) -> Iterator[Clai
     N, X = pair.kernel, pair.restricted
     values: dict[str, Scalar | Matrix] = {"A": pair.A, "C": pair.c, "N": N, "X": X, "phi": polynomial}
     e = Environment(variable=pair.variable, values=values)
-    A, C, kernel, restricted = (e[name] for name in ("A", "C", "N", "X"))
-    pencil = restricted.pencil
-    yield equality(C @ kernel, Matrix.zeros(pair.c.shape[0], N.shape[1]), e)
-    yield equality(A @ kernel, kernel @ restricted, e)
+    yield holds(e, "C N = 0")
+    yield holds(e, "A N = N X")
     yield Claim(relation(N.shape[1], X.shape[0], "!==", 0), e, "X has the order of the kernel")
     yield _of_full_rank(pair, e)
-    yield equality(pencil.apply("det"), pair.fixed_polynomial, e)
+    yield holds(e, "det(pencil(X)) = {fixed_polynomial}", fixed_polynomial=pair.fixed_polynomial)
     phi = e["phi"]
     yield equality(phi, pair.fixed_polynomial * quotient + rest, e)
     yield Claim(relation(Term(Literal(rest), e), "!==", 0), e)

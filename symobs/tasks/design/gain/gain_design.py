@@ -21,7 +21,7 @@ from symobs.stability.criteria.stability import StabilityVerdict, stability
 from symobs.system.specification import desired_polynomial, over_common_data, read_entries, read_gain, reject_both
 from symobs.tasks.analysis.page_parts import HIDDEN
 from symobs.tasks.analysis.strata.strata import region_of
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_claims import (
     claims_of_kernel_family,
     excluded_claims,
@@ -488,19 +488,26 @@ class PlacementProblem:
         """The letter of the desired polynomial."""
         return f"phi_{self.index}"
 
+    @property
+    def is_dual(self) -> bool:
+        """Whether a gain is found for (Aᵀ, Cᵀ) and transposed."""
+        return self.gain == "L"
+
+    def pair(self, page: Builder) -> tuple[Term, Term]:
+        """Return (Aᵀ, Cᵀ) or (A, B), for which a row is found."""
+        return (page["A.T"], page["C.T"]) if self.is_dual else (page["A"], page["B"])
+
     def closed_loop_matrix(self, page: Builder) -> Term:
         """Return A − LC or A − BK."""
         return page["A"] - self._gain_term(page)
 
     def error_determinant(self, page: Builder) -> Term:
         """Return det(sI − A + LC) or det(sI − A + BK)."""
-        return (page["A"].pencil + self._gain_term(page)).apply("det")
+        return page("det(pencil(A) + {gain_term})", gain_term=self._gain_term(page))
 
     def _gain_term(self, page: Builder) -> Term:
-        return page["L"] @ page["C"] if self.gain == "L" else page["B"] @ page["K"]
+        return page["L C"] if self.is_dual else page["B K"]
 
 
 OBSERVER = PlacementProblem("observer", "L", "O", "observability", "o", "beta_")
-
-
 FEEDBACK = PlacementProblem("state_feedback", "K", "Ctr", "controllability", "c", "alpha_")

@@ -12,10 +12,10 @@ from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.stability.criteria.stability import monic
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import determinant_form, formula_of_factored, spread, stratum_of, undecided
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_design import GainDesign
 from symobs.tasks.design.gain.gain_kind import AlgebraicGain
-from symobs.tasks.design.page_parts import define_gain, entry_letters, gain_letters
+from symobs.tasks.design.named_gains import define_gain, entry_letters, gain_letters
 from symobs.tasks.design.pole_placement.sylvester import Sylvester, charts_of
 
 if TYPE_CHECKING:
@@ -93,7 +93,9 @@ def _write_structured(page: Builder, design: GainDesign, side: PlacementProblem)
     wanted = [factor.substitute(meanings) for factor, _ in parts]
     if len(parts) > 1:
         asked = Factored(Scalar.of(1), tuple((factor, 1) for factor in wanted))
-        page.equal(relation(page[side.phi], page.term(formula_of_factored(asked))), say="structured_wish")
+        page.equal(
+            page.line(f"{side.phi} = {{value}}", value=page.term(formula_of_factored(asked))), say="structured_wish"
+        )
     pairs = [
         pair
         for (factor, _), wish in zip(parts, wanted, strict=True)
@@ -224,17 +226,17 @@ def _short_determinant(X: Matrix, names: tuple[str, ...]) -> Scalar | None:
 
 def _sylvester(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
     """Return AᵀX − XF = CᵀG, or AX − XF = BG."""
-    A, F = _state_matrix(page, side, equation), page[f"F_{side.index}"]
+    A = _state_matrix(page, side, equation)
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
     if side.gain == "L":
-        return relation(A.T @ page[X] - page[X] @ F, page["C"].T @ page[G])
-    return relation(A @ page[X] - page[X] @ F, page["B"] @ page[G])
+        return page.line(f"{{value}} {X} - {X} F_{side.index} = C.T {G}", value=A.T)
+    return page.line(f"{{A}} {X} - {X} F_{side.index} = B {G}", A=A)
 
 
 def _gain(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Term:
     """Return L₀ + (G X⁻¹)ᵀ, or K₀ + G X⁻¹."""
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
-    found = page[G] @ page[X].inverse
+    found = page[f"{G} {X}^-1"]
     found = found.T if side.gain == "L" else found
     return found if equation.shift is None else page[f"{side.gain}_0"] + found
 
@@ -242,9 +244,9 @@ def _gain(page: Builder, side: PlacementProblem, which: str, equation: Sylvester
 def _similar(page: Builder, side: PlacementProblem, which: str, equation: Sylvester) -> Relation:
     """Return (A − LC)ᵀ = Aᵀ − CᵀGX⁻¹ = XFX⁻¹, or A − BK = A − BGX⁻¹ = XFX⁻¹."""
     G, X = (f"{letter}_{side.index}{which}" for letter in "GX")
-    A, moved = _state_matrix(page, side, equation), page[G] @ page[X].inverse
-    left = A.T - page["C"].T @ moved if side.gain == "L" else A - page["B"] @ moved
-    return relation(left, page[X] @ page[f"F_{side.index}"] @ page[X].inverse)
+    A = _state_matrix(page, side, equation)
+    left = page(f"{{value}} - C.T {G} {X}^-1", value=A.T) if side.gain == "L" else A - page[f"B {G} {X}^-1"]
+    return page.line(f"{{left}} = {X} F_{side.index} {X}^-1", left=left)
 
 
 # The pages of gains with zeros in given places: none, none but on a stratum, one with roots, one in a root of high
@@ -282,7 +284,10 @@ def _algebraic(page: Builder, design: GainDesign, kind: AlgebraicGain, side: Pla
     inner, page.steps, before = page.steps, [], page.environment
     page.environment = before.with_relations((found.polynomial,))
     define_gain(page, side.gain, design.transpose_for_task(found.gain))
-    page.verified("as_required", check=relation(side.error_determinant(page), page[side.phi]))
+    page.verified(
+        "as_required",
+        check=page.line(f"{{error_determinant}} = {side.phi}", error_determinant=side.error_determinant(page)),
+    )
     steps, page.steps, page.environment = tuple(page.steps), inner, before
     changes = relation(page.value(at_ends[0]) @ page.value(at_ends[1]), "<", 0)
     page.conclude("zero_in_root", changes, places=_listed(kind.zero), low=str(low), high=str(high))
@@ -307,7 +312,9 @@ def another_gain(page: Builder, case: Case, side: PlacementProblem, say: str) ->
     inner, page.steps, before = page.steps, [], page.environment
     page.with_roots(result.answer[side.gain])
     define_gain(page, side.gain, result.answer[side.gain], say=say)
-    page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
+    page.conclude_silently(
+        page.line(f"{{error_determinant}} = {side.phi}", error_determinant=side.error_determinant(page))
+    )
     conditions = [c.expression for c in result.holds_where if c.kind == "claim" and c.operator == "!="]
     if conditions:
         page.assume("gain_provided", *conditions)

@@ -1,26 +1,15 @@
-"""The pages of gain design: canonical form and Ackermann's formula, on either side of duality."""
+"""The pages of gain design, on either side of duality: the test, the polynomial, the gain and its check, the cases."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING
 
-from symobs.exact import (
-    Factored,
-    Matrix,
-    Scalar,
-    companion,
-    factored,
-    from_coefficients,
-    hankel_of,
-    root_of_pole,
-    roots_of,
-)
+from symobs.exact import Factored, Matrix, Scalar, factored, from_coefficients, root_of_pole, roots_of
 from symobs.exact.core.generators import all_roots
 from symobs.formula.tree import Evaluated, Literal, Roots
-from symobs.formula.tree.term import Term, block, product
+from symobs.formula.tree.written import stacked
 from symobs.proof.derivation import CaseStep
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.proof.derivation.facts import PREDICATES
@@ -28,7 +17,6 @@ from symobs.proof.derivation.wording_check import Said, rests
 from symobs.stability.criteria.stability import stability
 from symobs.system.specification import DesiredPolynomial
 from symobs.tasks.analysis.page_parts import (
-    determinant_form,
     environment_on,
     factored_form,
     formula_of_factored,
@@ -39,7 +27,7 @@ from symobs.tasks.analysis.page_parts import (
     undecided,
 )
 from symobs.tasks.analysis.rank.rank_page import outside_cases, square_test
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_design import OBSERVER, GainDesign, PlacementProblem
 from symobs.tasks.design.gain.gain_family_page import (
     another_gain,
@@ -50,230 +38,24 @@ from symobs.tasks.design.gain.gain_family_page import (
     write_sylvester,
 )
 from symobs.tasks.design.gain.gain_kind import GivenGain, UnassignableGain
-from symobs.tasks.design.page_parts import caution_poles, define_gain, gain_letters, over_fixed, say_unassignable
-from symobs.tasks.design.pole_placement.row_reduction import Reduction, gain_of, row_reduction
-from symobs.tasks.design.pole_placement.single_output import matching
+from symobs.tasks.design.gain.gain_ways_page import (
+    is_canonical,
+    readable,
+    say_canonical,
+    write_ackermann_formula,
+    write_canonical,
+    write_row_reduction,
+)
+from symobs.tasks.design.named_gains import define_gain
+from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
+from symobs.tasks.design.unassignable import over_fixed, say_unassignable
 from symobs.tasks.result import choose
 
 if TYPE_CHECKING:
     from symobs.exact.core.generators import Function
-    from symobs.formula.tree import Relation
+    from symobs.formula.tree.term import Term
     from symobs.tasks.result import Case
-
-
-# The pages of ways to a gain: Ackermann's formula, matching coefficients, companion form, row-reduced echelon form.
-
-
-#: A gain that rounding changes by more than this share of an entry is worth a warning.
-_HARM = Fraction(1, 100)
-
-
-def write_ackermann_formula(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
-    """Write L = φ(A) 𝒪⁻¹ eₙ, and K = eₙᵀ 𝒞⁻¹ φ(A)."""
-    order = page.plant.order
-    unit = page.value(Matrix.unit(order, order - 1))
-    if side.gain == "L":
-        last = page.define("q_o", page["O"].inverse @ unit, say="last_column")
-    else:
-        last = page.define("q_c", unit.T @ page["Ctr"].inverse, say="last_row")
-    polynomial = page["A"].apply(f"{side.phi}_at")
-    factors = [_factor_at(page, factor, power) for factor, power in desired.grouped()]
-    at = product(factors)
-    if side.gain == "L":
-        define_gain(page, "L", polynomial @ last, at @ last, say="ackermann_observer")
-    else:
-        define_gain(page, "K", last @ polynomial, last @ at, say="ackermann_state_feedback")
-
-
-def _factor_at(page: Builder, factor: Scalar, power: int) -> Term:
-    """Return a factor of φ with A put in for the variable: (A + 10 I)²."""
-    lead, *rest = factor.coefficients(page.plant.variable)
-    A, degree, order = page["A"], len(rest), page.plant.order
-    total = A**degree if lead.is_one else page.value(lead) @ A**degree
-    for index, coefficient in enumerate(rest):
-        if coefficient.is_zero:
-            continue
-        exponent = degree - 1 - index
-        body = A**exponent if exponent else page.identity(order)
-        negative = coefficient.is_constant and coefficient.fraction() < 0
-        size = -coefficient if negative else coefficient
-        term = body if size.is_one else page.value(size) @ body
-        total = total - term if negative else total + term
-    return total**power
-
-
-def write_matching(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
-    """Write det(sI − A + LC) with unknown l₁ … lₙ, its coefficients equated to those of φ, the linear system, its solution."""
-    order, variable = page.plant.order, page.plant.variable
-    system = matching(design.dual_pair(page.plant), desired)
-    unknown = gain_letters(page, side.gain, system.solution)
-    gain = page.define(side.gain, design.transpose_for_task(unknown), say="unknown_gain")
-    moved = gain @ page["C"] if side.gain == "L" else page["B"] @ gain
-    determinant = (page.s @ page.identity(order) - page["A"] + moved).apply("det")
-    polynomial = determinant.scalar
-    page.equal(relation(determinant, page.value(polynomial)), say="polynomial_of_unknown")
-    pairs = zip(polynomial.coefficients(variable)[1:], desired.coefficients, strict=True)
-    page.equal(*(relation(found, target) for found, target in pairs), say="equal_coefficients")
-    page.equal(relation(page.value(system.M) @ page.value(unknown), system.r), say="linear_system")
-    define_gain(page, side.gain, design.transpose_for_task(system.solution), say="solution_of_system")
-
-
-def write_companion(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
-    """Write T = [q; qAᵀ; …], which carries the dual pair to companion form, where the gain is the row of differences."""
-    order, variable = page.plant.order, page.plant.variable
-    found = page.plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
-    unit = page.value(Matrix.unit(order, order - 1))
-    if side.gain == "L":
-        A, driven = page["A"].T, page["C"].T
-        q = page.define("q_o", page["O"].inverse @ unit, say="companion_vector_observer").T
-    else:
-        A, driven = page["A"], page["B"]
-        q = page.define("q_c", unit.T @ page["Ctr"].inverse, say="companion_vector_state_feedback")
-    T = page.define("T", block([[q @ A**k if k else q] for k in range(order)]), say="companion_rows")
-    page.equal(relation(T @ A @ T.inverse, companion(found)), relation(T @ driven, unit), say="companion_reached")
-    wanted = [page.value(c) for c in reversed(desired.coefficients)]
-    row = block([[w - page.value(a) for w, a in zip(wanted, reversed(found), strict=True)]])
-    if side.gain == "L":
-        define_gain(page, "L", row @ T, row.as_value @ T.as_value, say="row_observer", transposed=True)
-    else:
-        define_gain(page, "K", row @ T, row.as_value @ T.as_value, say="row_state_feedback")
-
-
-def readable(design: GainDesign) -> bool:
-    """Return whether the row-reduced forms belong to the gain of the answer and are short enough to be written out."""
-    found = _reductions(design)
-    if (
-        found is None
-        or len(found) > readability.NULL_VECTORS
-        or any(part.reduced.size > readability.REDUCED_FORM for part in found)
-    ):
-        return False
-    return bool(design.transpose_for_task(gain_of(found)) == design.answer[design.letter])
-
-
-def _reductions(design: GainDesign) -> tuple[Reduction, ...] | None:
-    assert design.desired is not None  # noqa: S101 - a page of a given gain does not come here
-    return row_reduction(design.dual_pair(design.plant), design.desired)
-
-
-def write_row_reduction(page: Builder, design: GainDesign, side: PlacementProblem, _: DesiredPolynomial) -> None:
-    """Write for each pole the matrix [λI − Aᵀ : Cᵀ], its reduced form, the scalar relations, what is chosen, the vector."""
-    found = _reductions(design)
-    assert found is not None  # noqa: S101 - `readable` has said so
-    _open_eigenvalues(page, side)
-    page.remark(f"null_vectors_{side.kind}")
-    for number, part in enumerate(found, 1):
-        _reduce(page, side, part, number)
-    psi = page.define("Psi", Matrix.block([[part.psi for part in found]]), say="upper_parts")
-    f = page.define("f_psi", Matrix.block([[part.f for part in found]]))
-    page.equal(relation(psi.apply("det"), determinant_form(page, psi.value.determinant())), say="with_determinant")
-    gain, shown = f @ psi.inverse, f.as_value @ psi.as_value.inverse
-    unique = "_unique" if (page.plant.outputs if side.gain == "L" else page.plant.inputs) == 1 else ""
-    if side.gain == "L":
-        define_gain(page, "L", gain, shown, say=f"row_reduced{unique}_observer", transposed=True)
-    else:
-        define_gain(page, "K", gain, shown, say=f"row_reduced{unique}_state_feedback")
-    _rounded_too_early(page, gain.value)
-
-
-def _open_eigenvalues(page: Builder, side: PlacementProblem) -> None:
-    """Say where the eigenvalues are without the gain, where they can be written down."""
-    own = (page.s @ page.identity(page.plant.order) - page["A"]).apply("det")
-    factors = own.scalar.factors()[1]
-    if own.scalar.names <= {page.plant.variable} and all(f.degree(page.plant.variable) <= 2 for f, _ in factors):
-        page.remark(
-            f"open_eigenvalues_{side.kind}", roots=Roots(own.formula, roots_of(own.scalar, page.plant.variable))
-        )
-
-
-def _rounded_too_early(page: Builder, gain: Matrix) -> None:
-    """Show what becomes of the gain when the columns of Ψ are rounded before it is inverted, where that does harm."""
-    near = page.decimals(page["Psi"].value)
-    if not near or near[1].value.determinant().is_zero:
-        return
-    spoiled = page["f_psi"].as_value @ near[1].inverse
-    shown = page.decimals(spoiled.value)
-    pairs = zip(spoiled.value.entries, gain.entries, strict=True)
-    if shown and any(abs((wrong - right).fraction()) > _HARM * abs(right.fraction()) for wrong, right in pairs):
-        page.equal(relation(spoiled, *shown), say="rounded_too_early")
-
-
-def _reduce(page: Builder, side: PlacementProblem, part: Reduction, number: int) -> None:
-    """Write one reduction."""
-    if part.before is not None:
-        page.equal(relation(part.matrix, "~", part.reduced), say="generalised", pole=_named(page, part))
-    else:
-        words = ("pole" if number == 1 else "next_pole") if part.size == 1 else "pair" if _pair(part) else "factor"
-        chain = relation(_matrix(page, side, part), part.matrix, "~", part.reduced)
-        page.equal(chain, say=f"{words}_reduced", pole=_named(page, part))
-    if part.size == 1 and number == 1:
-        _relations(page, part, number)
-    near = page.decimals(part.vector)
-    xi = page.define(f"xi_{number}", part.vector, *near, say="" if part.size == 1 else "vectors_chosen")
-    zero = Matrix.zeros(part.order * part.size, 1)
-    matrix = part.matrix.select(range(part.matrix.shape[0]), range(part.vector.shape[0]))
-    right = zero if part.before is None else Matrix.column([-entry for entry in part.before.T.entries])
-    page.conclude_silently(relation(page.value(matrix) @ xi, right))
-
-
-def _matrix(page: Builder, side: PlacementProblem, part: Reduction) -> Term:
-    """Return [λI − Aᵀ : Cᵀ] (or [λI − A : B]) in letters; of a block J its blocks."""
-    order, J = part.order, part.J
-    A, driven = (page["A"].T, page["C"].T) if side.gain == "L" else (page["A"], page["B"])
-    nothing, empty = page.value(Matrix.zeros(order, order)), page.value(Matrix.zeros(*driven.value.shape))
-    rows = []
-    for j in range(part.size):
-        row = []
-        for k in range(part.size):
-            multiple = _multiple(page, J[k, j], order)
-            if k == j:
-                row.append(-A if multiple is None else multiple - A)
-            else:
-                row.append(nothing if multiple is None else multiple)
-        rows.append([*row, *(driven if k == j else empty for k in range(part.size))])
-    return block(rows)
-
-
-def _multiple(page: Builder, factor: Scalar, order: int) -> Term | None:
-    """Return a multiple of I, None for 0."""
-    identity = page.identity(order)
-    if factor.is_zero:
-        return None
-    if (factor * factor).is_one:
-        return identity if factor.is_one else -identity
-    return page.value(factor) @ identity
-
-
-def _relations(page: Builder, part: Reduction, number: int) -> None:
-    """Read the components off the reduced form, and choose what is free: for the first pole, which stands for all."""
-    width = part.vector.shape[0]
-    short = width < 10
-    names = [f"xi_{number}{i}" if short else f"xi_{number}_{i}" for i in range(1, width + 1)]
-    if taken_names(page).intersection(names):
-        return
-    xi = [page.name_coefficient(name, entry) for name, entry in zip(names, part.vector.entries, strict=True)]
-    free = [j for j in range(width) if j not in part.pivots]
-    lines: list[Relation] = []
-    for row, pivot in enumerate(part.pivots):
-        right = part.reduced[row, width] if part.before is not None else Scalar.of(0)
-        lines.append(relation(xi[pivot], sum((xi[j] * -part.reduced[row, j] for j in free), start=right)))
-    chosen = [relation(xi[j], part.vector[j, 0]) for j in free]
-    page.equal(*lines, say="relations_read_off")
-    page.equal(*chosen, say="free_chosen")
-
-
-def _pair(part: Reduction) -> bool:
-    """Return whether J stands for a conjugate pair."""
-    return part.size == 2 and part.J[0, 0] == part.J[1, 1]
-
-
-def _named(page: Builder, part: Reduction) -> Evaluated:
-    """Return the pole, or the factor of φ, of a reduction."""
-    if part.size == 1:
-        return Evaluated(page.value(part.J).apply("det").formula, Literal(part.J[0, 0]))
-    pencil = page.s @ page.identity(part.size) - page.value(part.J)
-    return Evaluated(pencil.apply("det").formula, Literal(part.J.characteristic_polynomial(page.plant.variable)))
 
 
 #: The degree of the factor of a conjugate pair.
@@ -307,9 +89,9 @@ def write_gain(
         _with_fixed_modes(page, design, side)
     else:
         write = choose(design.task, style, style).page or _write_gain_alone
-        asks = "polynomials" if write is write_canonical and not (side.gain == "K" and _is_canonical(page)) else "asks"
+        asks = "polynomials" if write is write_canonical and not (side.gain == "K" and is_canonical(page)) else "asks"
         write(page, design, side, name_coefficients(page, design, side, asks))
-    page.conclude_silently(relation(page[side.gain], design.answer[side.gain]))
+    page.conclude_silently(page.line(f"{side.gain} = {{gain}}", gain=design.answer[side.gain]))
     page.in_decimals(side.gain)
     _verified(page, design, side)
     if cases:
@@ -356,24 +138,14 @@ def _roots_found(design: GainDesign, side: PlacementProblem) -> frozenset[Functi
 
 def define_test_matrix(page: Builder, side: PlacementProblem) -> None:
     """Define 𝒪 or 𝒞 block by block."""
-    A, order = page["A"], page.plant.order
-    if side.gain == "L":
-        blocks = [[page["C"] @ A**k if k else page["C"]] for k in range(order)]
-    else:
-        blocks = [[A**k @ page["B"] if k else page["B"] for k in range(order)]]
-    page.define(side.matrix, block(blocks), say=f"{side.test}_matrix")
-
-
-def _is_canonical(page: Builder) -> bool:
-    """Return whether (A, B) is in controllable canonical form."""
-    m, order = page.plant.matrices, page.plant.order
-    chi = m.A.characteristic_polynomial(page.plant.variable)
-    return Matrix.unit(order, order - 1) == m.B and companion(chi.coefficients(page.plant.variable)[1:]) == m.A
+    order = page.plant.order
+    blocks = stacked("C", "A", order) if side.is_dual else stacked("B", "A", order, across=True)
+    page.define(side.matrix, blocks, say=f"{side.test}_matrix")
 
 
 def _test(page: Builder, design: GainDesign, side: PlacementProblem, style: str) -> None:
-    if side.gain == "K" and style == "canonical_form" and _is_canonical(page):
-        _say_canonical(page)
+    if side.gain == "K" and style == "canonical_form" and is_canonical(page):
+        say_canonical(page)
         return
     if not page.defines(side.matrix):
         define_test_matrix(page, side)
@@ -408,55 +180,6 @@ def name_coefficients(
     page.define(side.phi, grouped, page.value(named), say=f"asks_{side.kind}")
     page.equal(*(relation(s, m) for s, m in zip(symbols, coefficients, strict=True)), say="coefficients")
     return DesiredPolynomial(variable, (named,))
-
-
-def _say_canonical(page: Builder) -> None:
-    """Say that (A, B) is in controllable canonical form already."""
-    order, variable = page.plant.order, page.plant.variable
-    chi = page.plant.matrices.A.characteristic_polynomial(variable)
-    tested = block([[page["A"] ** k @ page["B"] if k else page["B"] for k in range(order)]])
-    page.remark(
-        "already_canonical",
-        relation(tested.apply("rank"), order),
-        relation(page["A"], companion(chi.coefficients(variable)[1:])),
-        relation(page["B"], Matrix.unit(order, order - 1)),
-        chi=relation((page.s @ page.identity(order) - page["A"]).apply("det"), page.value(chi)),
-    )
-
-
-def write_canonical(page: Builder, _: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
-    """Write the difference of coefficients, constant first, carried back by V⁻¹."""
-    plant, order = page.plant, page.plant.order
-    variable = plant.variable
-    wanted = [page.value(c) for c in reversed(desired.coefficients)]
-    if side.gain == "K" and _is_canonical(page):
-        found = plant.matrices.A.characteristic_polynomial(variable).coefficients(variable)[1:]
-        define_gain(page, "K", _difference(page, wanted, list(found)))
-        return
-    A = page["A"].T if side.gain == "L" else page["A"]
-    matrix = page[side.matrix].T if side.gain == "L" else page[side.matrix]
-    chi = plant.matrices.A.characteristic_polynomial(variable)
-    found = chi.coefficients(variable)[1:]
-    said = getattr(page.steps[-1], "sentence", None)
-    is_announced = said is not None and said.key == f"polynomials_{side.kind}"  # beside φ
-    say = "" if is_announced else f"open_{side.kind}"
-    page.define("chi", (page.s @ page.identity(order) - A).apply("det"), say=say)
-    hankel = page.value(hankel_of(found))
-    written = [matrix.as_value @ hankel] if order > 1 else []
-    V = page.define(f"V_{side.index}", matrix @ hankel, *written, say=f"canonical_{side.kind}")
-    page.equal(
-        relation(V.inverse, V.inverse.as_value), relation(V.apply("det"), determinant_form(page, V.value.determinant()))
-    )
-    row = _difference(page, wanted, list(found))
-    if side.gain == "L":
-        define_gain(page, "L", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_observer", transposed=True)
-    else:
-        define_gain(page, "K", row @ V.inverse, row.as_value @ V.inverse.as_value, say="row_state_feedback")
-
-
-def _difference(page: Builder, wanted: list[Term], found: list[Scalar]) -> Term:
-    entries = [w - page.value(a) for w, a in zip(wanted, reversed(found), strict=True)]
-    return block([entries])
 
 
 def _with_fixed_modes(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
@@ -514,7 +237,7 @@ def _fixed(page: Builder, side: PlacementProblem, kernel: Matrix, restricted: Ma
     """Introduce N and X, and return the polynomial of the modes that no gain moves."""
     for name, value in zip(side.hidden, (kernel, restricted), strict=True):
         page.set(name, value)
-    return hidden_polynomial(page, kernel.shape[1], side.hidden[1])
+    return hidden_polynomial(page, side.hidden[1])
 
 
 def _given_gain(page: Builder, design: GainDesign, side: PlacementProblem, *, of_loop: bool) -> None:
@@ -605,7 +328,9 @@ def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side
     page.conclude(key, *bound, predicate("polynomial", quotient), modes=modes)
     if not own:
         page.define(side.gain, gain)
-    page.conclude_silently(relation(side.error_determinant(page), page[side.phi]))
+    page.conclude_silently(
+        page.line(f"{{error_determinant}} = {side.phi}", error_determinant=side.error_determinant(page))
+    )
     steps = outside_cases(page, result, page.steps) or [undecided(page, cases[-1])]
     if steps != page.steps:  # a gain that is defined there is none of the further cases
         anew = set_anew(before, page.environment)

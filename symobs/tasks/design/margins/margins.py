@@ -16,7 +16,6 @@ from symobs.exact import Factored, Matrix, RealNumber, Scalar, transfer
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
 from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
 from symobs.formula.tree import Decimals, Environment
-from symobs.formula.tree.term import Term, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
@@ -31,11 +30,12 @@ from symobs.tasks.design.compensator.compensator import observer_based, observer
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import design_of
-from symobs.tasks.result import Result, choose, equality, method, page_of, poles_of, task
+from symobs.tasks.result import Result, choose, equality, holds, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.formula.tree.term import Term
     from symobs.system import StateSpace
     from symobs.system.specification import GainText, Name, Poles, PolynomialText, TransferFunctionText
     from symobs.system.transfer_function_text import WrittenTransferFunction
@@ -115,14 +115,11 @@ class Margins(Result):
             if own is not None:
                 inner = e["A_c"].pencil
                 whole = whole @ inner.apply("det")
-            yield equality(e["chi_o"], whole, e, "P = det(s*I - A), times that of the compensator")
+            yield holds(e, "chi_o = {whole}", "P = det(s*I - A), times that of the compensator", whole=whole)
             yield equality(closed, _plain(self.design.fields[_LOOPS[self.design.task][0]]), e, "P + N of the design")
         else:
-            A, B, C, D, F = (e[name] for name in "ABCDF")
-            yield equality(e["chi_o"], whole @ e["q"], e)
-            G = C @ A.pencil.inverse @ B + D
-            one = identity(1, e)
-            yield equality(e["chi_cl"] @ one, e["chi_o"] @ (one + F @ G), e)
+            yield holds(e, "chi_o = {whole} q", whole=whole)
+            yield holds(e, "chi_cl I = chi_o (I + F (C pencil(A)^-1 B + D))")
         if answer["slowest"] is not None:
             yield Statement("the slowest root", lambda: "exact" if self._slowest == answer["slowest"] else "")
         if answer["modulus"] is not None:
@@ -401,14 +398,13 @@ def write_margins(page: Builder, result: Margins) -> None:
 
 def _polynomials(page: Builder, result: Margins) -> None:
     """Write P and P + N."""
-    plant, A, kind = page.plant, page["A"], None if result.design is None else result.design.task
-    pencil = A.pencil
-    opened: Term = pencil.apply("det")
+    plant, kind = page.plant, None if result.design is None else result.design.task
+    opened: Term = page["det(pencil(A))"]
     closed: list[Term] = []
     if kind == "state_feedback":
-        closed = [(pencil + page["B"] @ page["K"]).apply("det")]
+        closed = [page["det(pencil(A) + B K)"]]
     elif kind == "observer":
-        closed = [(pencil + page["L"] @ page["C"]).apply("det")]
+        closed = [page["det(pencil(A) + L C)"]]
     elif kind == "compensator":
         assert result.design is not None  # noqa: S101 - it is one
         own = page["A_c"] if page.defines("A_c") else page.set("A_c", result.design.fields["compensator_matrix"])
@@ -421,9 +417,9 @@ def _polynomials(page: Builder, result: Margins) -> None:
     place = "output" if kind == "observer" else "input"
     page.define("chi_o", opened, page.value(result.answer["opened"]), say=f"margins_cut_{place}", closing=False)
     if not closed:
-        response = page["C"] @ pencil.inverse @ page["B"]
+        response = page["C pencil(A)^-1 B"]
         response = response + page["D"] if plant.matrices.has_feedthrough else response
-        closed = [page["chi_o"] @ (page.value(1) + page["F"] @ response)]
+        closed = [page("chi_o (1 + F {response})", response=response)]
     page.define("chi_cl", *closed, page.value(result.answer["closed"]), say="margins_closed", closing=False)
 
 
@@ -433,6 +429,6 @@ def _gains(page: Builder, result: Margins) -> None:
         page.remark("margins_no_loop")
         return
     k = page.value(Scalar.symbol("k"))
-    moved = page["chi_o"] + k @ (page["chi_cl"] - page["chi_o"])
+    moved = page("chi_o + {k} (chi_cl - chi_o)", k=k)
     page.define("chi_p", moved, page.value(result.region.answer["polynomial"]), say="margins_gain", closing=False)
     write_line(page, result.region, "chi_p")

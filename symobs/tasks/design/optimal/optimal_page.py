@@ -115,20 +115,19 @@ def _solve(page: Builder, result: OptimalGain) -> None:
 def _problem(page: Builder, result: OptimalGain) -> tuple[Term, Term, Term, Term]:
     """Return the terms of A, B, Q and R of the regulator, the cross weight removed."""
     if result.letter == "L":
-        return page["A"].T, page["C"].T, _noise(page, result), page["V_n"]
+        return page["A.T"], page["C.T"], page[_noise(result)], page["V_n"]
     A, B, Q, R = (page[name] for name in ("A", "B", "Q_x", "R_u"))
     if result.regulator.N.is_zero:
         return A, B, Q, R
-    N = page["N_x"]
     if not page.defines("A_N"):
-        page.define("A_N", A - B @ R.inverse @ N.T, say="optimal_uncrossed")
-        page.define("Q_N", Q - N @ R.inverse @ N.T)
+        page.define("A_N", "A - B R_u^-1 N_x.T", say="optimal_uncrossed")
+        page.define("Q_N", "Q_x - N_x R_u^-1 N_x.T")
     return page["A_N"], B, page["Q_N"], R
 
 
-def _noise(page: Builder, result: OptimalGain) -> Term:
+def _noise(result: OptimalGain) -> str:
     """Return GWGᵀ, or W where the noise acts on each state."""
-    return page["G_n"] @ page["W_n"] @ page["G_n"].T if _has_input_matrix(result) else page["W_n"]
+    return "G_n W_n G_n.T" if _has_input_matrix(result) else "W_n"
 
 
 # -- exact -------------------------------------------------------------------------------------------------------------
@@ -159,9 +158,8 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
     if not matched:
         page.define(letter, page.value(answer[letter]), say="optimal_gain", answer=True, closing=False)
 
-    slots = {**_LETTERS, "noise": _noise(page, result)} if letter == "L" else _LETTERS
     equations = result.equations(discrete=plant.is_discrete, cross=not result.regulator.N.is_zero)
-    riccati, gain = (page.line(equation, **slots) for equation in equations)
+    riccati, gain = (page.line(each.replace("noise", _noise(result)), **_LETTERS) for each in equations)
     page.verified("optimal_checked", riccati=riccati, gain=gain)
     chi = page.define(
         f"chi_{letter}", _pencil(page, result, page[letter]).apply("det"), answer["polynomial"], silent=True
@@ -175,7 +173,7 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
 def _pencil(page: Builder, result: OptimalGain, gain: Term) -> Term:
     """Return sI − A + BK, sI − A + LC, the gain in some form."""
     moved = page["B"] @ gain if result.letter == "K" else gain @ page["C"]
-    return page.s @ page.identity(page.plant.order) - page["A"] + moved
+    return page("s I - A + {moved}", moved=moved)
 
 
 def _tell_root_square(page: Builder, result: OptimalGain) -> bool:
@@ -184,14 +182,13 @@ def _tell_root_square(page: Builder, result: OptimalGain) -> bool:
         return False
     A, B, Q, R = _problem(page, result)
     side = "_dual" if result.letter == "L" else ""
-    one = page.identity(page.plant.order)
-    forward, backward = page.s @ one - A, -(page.s @ one) - A
+    forward, backward = page["s I"] - A, page("-s I - {A}", A=A)
     page.define("chi_p", forward.apply("det"), say=f"optimal_open_loop{side}")
     page.define("chi_m", backward.apply("det"))
     page.define("v_s", forward.apply("adj") @ B)
     page.define("v_m", backward.apply("adj") @ B)
-    cost = R.inverse @ page["v_m"].T @ Q @ page["v_s"]
-    page.define("c_even", page["chi_p"] @ page["chi_m"] + cost, say="optimal_even")
+    cost = page("{inverse} v_m.T {Q} v_s", inverse=R.inverse, Q=Q)
+    page.define("c_even", page("chi_p chi_m + {cost}", cost=cost), say="optimal_even")
     return True
 
 
@@ -205,21 +202,21 @@ def _tell_locus(page: Builder, Q: Term, R: Term) -> None:
     moved = free + cost * Scalar.symbol(_WEIGHT)
     picture = root_locus(moved, variable, _WEIGHT, (Fraction(0), Fraction(1)), None, None)
     if picture is not None and not cost.is_zero:
-        cost_term = R.inverse @ page["v_m"].T @ Q @ page["v_s"]
-        grown = page["chi_p"] @ page["chi_m"] + page.value(Scalar.symbol(_WEIGHT)) @ cost_term
+        cost_term = page("{inverse} v_m.T {Q} v_s", inverse=R.inverse, Q=Q)
+        grown = page("chi_p chi_m + {WEIGHT} {cost_term}", WEIGHT=Scalar.symbol(_WEIGHT), cost_term=cost_term)
         page.define("c_rho", grown, moved, say="optimal_weighted")
         page.plot(picture, page["c_rho"], say="optimal_locus")
 
 
 def _tell_pencil(page: Builder, A: Term, B: Term, Q: Term, R: Term) -> None:
     """Write det(sI − H), in discrete time the determinant of the pencil of Riccati's equation."""
-    one, S = page.identity(page.plant.order), B @ R.inverse @ B.T
+    S = B @ R.inverse @ B.T
     if page.plant.is_discrete:
-        pencil = block([[page.s @ one - A, page.s @ S], [Q, page.s @ A.T - one]])
+        pencil = page("[s I - {A}, s {S}; {Q}, s {T} - I]", A=A, S=S, Q=Q, T=A.T)
         page.define("c_even", pencil.apply("det"), say="optimal_even_of_pencil")
         return
-    H = page.define("H_m", block([[A, -S], [-Q, -A.T]]), say="optimal_hamiltonian")
-    pencil = page.s @ page.identity(2 * page.plant.order) - H
+    page.define("H_m", block([[A, -S], [-Q, -A.T]]), say="optimal_hamiltonian")
+    pencil = page["s I - H_m"]
     page.define("c_even", pencil.apply("det"), say="optimal_even_of_pencil")
 
 
@@ -298,7 +295,7 @@ def _tell_obstacle(page: Builder, result: OptimalGain, found: Obstacle) -> None:
     N, X = (page[name] for name in names)
     A, _, Q, _ = _problem(page, result)
     if found.kind == "uncontrollable":
-        A, row = (page["A"], page["C"]) if is_filter else (page["A"].T, page["B"].T)
+        A, row = (page["A"], page["C"]) if is_filter else (page["A.T"], page["B.T"])
         said = "optimal_unmeasured_modes" if is_filter else "optimal_uncontrollable_modes"
     else:
         row, said = page["Q_x"] if is_filter else Q, "optimal_undriven_modes" if is_filter else "optimal_unseen_modes"
@@ -306,7 +303,7 @@ def _tell_obstacle(page: Builder, result: OptimalGain, found: Obstacle) -> None:
             page.set("A_N", result.regulator.A)
             page.set("Q_N", result.regulator.Q)
     order = found.X.shape[0]
-    mu = page.define("mu", (page.s @ page.identity(order) - X).apply("det"), found.polynomial, say=said)
+    mu = page.define("mu", page("det(s I - {X})", X=X), found.polynomial, say=said)
     nothing = Matrix.zeros(row.value.shape[0], order)
     page.equal(relation(N, N.as_value), relation(row @ N, nothing), relation(A @ N, N @ X, (N @ X).as_value))
     if found.kind == "uncontrollable":

@@ -52,8 +52,10 @@ PHRASES: dict[str, str] = {
 }
 
 QUESTIONS: dict[str, str] = {
-    "ask lqr": "Find the state feedback that minimises the quadratic cost with the weights $Q_x$ of the state and $R_u$ of the input. What is the polynomial of the loop?",
-    "ask lqr N": "Find the state feedback that minimises the quadratic cost with the weights $Q_x$ of the state, $R_u$ of the input and $N_x$ of their products. What is the polynomial of the loop?",
+    "ask lqr": "Find the state feedback that minimises the integral of $xᵀ Q_x x + uᵀ R_u u$ over all times. What is the polynomial of the loop?",
+    "ask lqr discrete": "Find the state feedback that minimises the sum of $xᵀ Q_x x + uᵀ R_u u$ over all instants. What is the polynomial of the loop?",
+    "ask lqr N": "Find the state feedback that minimises the integral of $xᵀ Q_x x + 2 xᵀ N_x u + uᵀ R_u u$ over all times. What is the polynomial of the loop?",
+    "ask lqr N discrete": "Find the state feedback that minimises the sum of $xᵀ Q_x x + 2 xᵀ N_x u + uᵀ R_u u$ over all instants. What is the polynomial of the loop?",
     "ask kalman": "Find the gain of the steady-state Kalman filter for input noise of intensity $W_n$ and output noise of intensity $V_n$. What is the covariance of the error?",
     "ask kalman G": "Find the gain of the steady-state Kalman filter for noise of intensity $W_n$ that enters through $G_n$, and output noise of intensity $V_n$. What is the covariance of the error?",
 }

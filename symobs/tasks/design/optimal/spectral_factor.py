@@ -30,8 +30,6 @@ if TYPE_CHECKING:
 _PRIMES, _MOST_PRIMES = (2, 3, 5, 7, 11, 13), 2
 #: Roots in roots take the radicands in turn, the outermost last.
 _NESTED = 3
-
-
 #: A name that no parameter has, among the signs where roots are left whole.
 _WHOLE = "whole roots"
 

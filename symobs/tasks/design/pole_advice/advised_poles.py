@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.exact import (
     Complex,
     Factored,
-    Matrix,
     Root,
     Scalar,
     apply_polynomial,
@@ -38,7 +37,7 @@ from symobs.tasks.analysis.rank.observability import Controllability, Observabil
 from symobs.tasks.analysis.strata.loci import loci
 from symobs.tasks.analysis.strata.strata import carried, equations_of_locus, region_of, strata
 from symobs.tasks.design.pole_placement.single_output import ObserverPair
-from symobs.tasks.result import Case, Result, equality
+from symobs.tasks.result import Case, Result, equality, holds
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -269,8 +268,6 @@ def _of_kept_modes(advice: AdvisedPoles) -> Iterator[Case]:
 
 #: Zero and pole are near each other where they differ by less than this part of the zero.
 _NEAR = 10
-
-
 #: A gain is huge where an entry is more than this many times the largest of A, and of 1.
 _HUGE = 100
 
@@ -441,13 +438,13 @@ class AdvisedPoles(Result):
         values["phi_o"] = answer["polynomial"].value
         e = Environment(variable=variable, values=values, signs=self.plant.symbols.signs)
         e = e.with_relations(identities([zeros, rest])[1])
-        z, r, s = (e[name] for name in ("phi_z", "phi_r", "s"))
+        z = e["phi_z"]
         yield equality(numerator_term(e, self.plant), z @ Term(Literal(self.zeros.others), e), e)
-        yield equality(e["phi_o"], z @ r, e)
+        yield holds(e, "phi_o = phi_z phi_r")
         if not self.count:
-            yield equality(r, 1, e)
+            yield holds(e, "phi_r = 1")
         elif self.request.radius is not None:
-            yield equality(r @ (-s).apply("phi_r_at"), self.circle, e, "phi_r(s) phi_r(-s) is Butterworth's")
+            yield holds(e, "phi_r phi_r_at(-s) = {circle}", "phi_r(s) phi_r(-s) is Butterworth's", circle=self.circle)
         else:
             yield from self._claims_of_pair(e)
         yield from self._claims_of_fixed_modes()
@@ -487,7 +484,7 @@ class AdvisedPoles(Result):
         if omega_d is not None:
             yield Claim(relation(overshoot_of(omega_d / sigma), "<=", request.overshoot), e)
         expected = product_of(dominated(self.count, sigma, omega_d, self.plant.variable))
-        yield equality(e["phi_r"], expected, e)
+        yield holds(e, "phi_r = {expected}", expected=expected)
 
     def _claims_of_fixed_modes(self) -> Iterator[Claim]:
         """Yield the claim that the modes missing among the poles are unobservable."""
@@ -497,12 +494,10 @@ class AdvisedPoles(Result):
         m, N, X = self.plant.matrices, self.pair.kernel, self.pair.restricted
         size = N.shape[1]
         e = Environment(variable=variable, values={"A": m.A, "C": m.C, "N": N, "X": X})
-        A, C, N_, X_ = (e[name] for name in ("A", "C", "N", "X"))
-        yield equality(C @ N_, Matrix.zeros(1, size), e)
-        yield equality(A @ N_, N_ @ X_, e)
-        yield equality(N_.apply("rank"), size, e)
-        pencil = X_.pencil
-        yield equality(pencil.apply("det"), pair.fixed_polynomial, e)
+        yield holds(e, "C N = 0")
+        yield holds(e, "A N = N X")
+        yield holds(e, "rank(N) = {size}", size=size)
+        yield holds(e, "det(pencil(X)) = {fixed_polynomial}", fixed_polynomial=pair.fixed_polynomial)
 
     # -- what follows ------------------------------------------------------------------------------------------------
 

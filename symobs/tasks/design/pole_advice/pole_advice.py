@@ -255,19 +255,18 @@ def _zeros(page: Builder, advice: PoleAdvice) -> None:
         "b_P", numerator_term(page.environment, plant), factored_form(page, b), say="numerator_of_plant", closing=False
     )
     if not page.defines("P"):
-        chi = page["A"].pencil.apply("det")
         P = factored_form(page, b / plant.matrices.A.characteristic_polynomial(plant.variable))
-        page.define("P", page["b_P"] / chi, P, say="transfer_from_numerator", closing=False)
+        page.define("P", "b_P / det(pencil(A))", P, say="transfer_from_numerator", closing=False)
     zeros = roots_of(b, plant.variable) if b.degree(plant.variable) > 0 else ()
     if not zeros and b:
         page.conclude("no_zeros", relation(page["b_P"], b))
     elif zeros and all(root.is_closed for root in zeros):
-        page.conclude("advice_zeros", roots=Roots(page["b_P"].inverse.formula, zeros))
+        page.conclude("advice_zeros", roots=Roots(page["b_P^-1"].formula, zeros))
     if advice.zeros.used:
         page.define("phi_z", _product(page, advice.zeros.used), say="zeros_taken", closing=False)
     else:
         page.set("phi_z", Scalar.of(1))
-        page.conclude("no_zeros_taken", relation(page["phi_z"], 1))
+        page.conclude("no_zeros_taken", "phi_z = 1")
 
 
 def _circle(page: Builder, advice: PoleAdvice, radius: Scalar) -> None:
@@ -286,7 +285,7 @@ def _circle(page: Builder, advice: PoleAdvice, radius: Scalar) -> None:
         page.define("phi_r", whole, say="some_on_circle", closing=False, count=Counted("number", count))
     powers = [page.value(radius) ** (2 * count), page.s ** (2 * count)]
     circle = powers[0] + powers[1] if count % 2 == 0 else powers[0] - powers[1]
-    identity = relation(page["phi_r"] @ (-page.s).apply("phi_r_at"), circle)
+    identity = page.line("phi_r phi_r_at(-s) = {circle}", circle=circle)
     if count == 1:
         page.conclude_silently(identity)
         return
@@ -301,7 +300,7 @@ def _circle(page: Builder, advice: PoleAdvice, radius: Scalar) -> None:
 
 def _nothing(page: Builder) -> None:
     page.set("phi_r", Scalar.of(1))
-    page.conclude("none_remains", relation(page["phi_r"], 1))
+    page.conclude("none_remains", "phi_r = 1")
 
 
 def _pair(page: Builder, advice: PoleAdvice) -> None:
@@ -309,7 +308,7 @@ def _pair(page: Builder, advice: PoleAdvice) -> None:
     answer, request, count = advice.answer, advice.request, advice.count
     assert request.settling_time is not None and request.overshoot is not None  # noqa: S101, PT018 - one of two ways to ask
     sigma, omega_d, time = answer["sigma"], answer["omega_d"], request.settling_time
-    page.define("sigma_d", page.value(4) / page["T_s"], say="rate_from_settling")
+    page.define("sigma_d", "4 / T_s", say="rate_from_settling")
     page.conclude("decayed", bound=relation(function("exp", -sigma * time), "<=", Scalar.of(1) / 50))
     if not count:
         _nothing(page)
@@ -318,14 +317,13 @@ def _pair(page: Builder, advice: PoleAdvice) -> None:
     if omega_d is None:
         page.define("phi_r", _product(page, factors), say="one_from_settling", closing=False)
         return
-    bound = relation(overshoot_of(omega_d / sigma), "<=", page["M_p"])
+    bound = page.line("{sigma} <= M_p", sigma=overshoot_of(omega_d / sigma))
     page.define("omega_d", page.value(omega_d), say="overshoot_held", bound=bound)
-    page.conclude_silently(relation(page["omega_d"], page.value(omega_d / sigma) @ page["sigma_d"]))
+    page.conclude_silently(page.line("omega_d = {sigma} sigma_d", sigma=omega_d / sigma))
     more = overshoot_of(omega_d / sigma + third_digit((omega_d / sigma).fraction()))
-    page.conclude("overshoot_close", more=relation(more, ">", page["M_p"]))
-    s = page.s
-    first = (s + page["sigma_d"]) ** 2 + page["omega_d"] ** 2
-    others = [s + page.value(k) @ page["sigma_d"] for k in range(FURTHER_LEFT, FURTHER_LEFT + count - 2)]
+    page.conclude("overshoot_close", more=page.line("{more} > M_p", more=more))
+    first = page["(s + sigma_d)^2 + omega_d^2"]
+    others = [page("s + {k} sigma_d", k=k) for k in range(FURTHER_LEFT, FURTHER_LEFT + count - 2)]
     whole = first
     for other in others:
         whole = whole @ other
@@ -343,33 +341,31 @@ def _polynomial(page: Builder, advice: PoleAdvice) -> None:
     both = {factor for factor, _ in zeros.used} & {factor for factor, _ in advice.answer["rest"].factors}
     for factor in sorted(both, key=str):
         if factor.degree(plant.variable) == 1:
-            twice = page["phi_o"] / page.value(factor**2)
-            alone = page["phi_z"] / page.value(page["phi_z"].scalar / factor)
+            twice = page("phi_o / {factor}", factor=factor**2)
+            alone = page("phi_z / {factor}", factor=page["phi_z"].scalar / factor)
             repeated = Roots(alone.formula, roots_of(factor, plant.variable))
             page.remark("pole_twice", predicate("polynomial", twice), repeated=repeated)
     if advice.request.radius is None or zeros.unused or not zeros.used or not advice.count:
         return
     if not plant.matrices.has_feedthrough:
-        pencil = page["A"].pencil.apply("adj")
-        multiple = page["phi_z"] if zeros.unit.is_one else page.value(zeros.unit) @ page["phi_z"]
-        page.equal(relation(page["C"] @ pencil @ page["B"], multiple), say="recovery")
+        multiple = page["phi_z"] if zeros.unit.is_one else page("{unit} phi_z", unit=zeros.unit)
+        page.equal(page.line("C adj(pencil(A)) B = {multiple}", multiple=multiple), say="recovery")
 
 
 def _caution(page: Builder, advice: PoleAdvice, warning: PoleWarning) -> None:
     """Say a warning, with what can be checked of it."""
-    slots, n = dict(warning.slots), page.plant.order
+    slots = dict(warning.slots)
     if warning.key == "always_unstable":
-        chi = page["A"].pencil.apply("det")
-        page.caution(warning.key, predicate("no_stable_compensator", page["b_P"] / chi))
+        page.caution(warning.key, predicate("no_stable_compensator", page["b_P / det(pencil(A))"]))
     elif warning.key == "modes_missed":
         page.set("N", advice.pair.kernel)
         page.set("X", advice.pair.restricted)
-        unseen = hidden_polynomial(page, advice.pair.kernel.shape[1])
+        unseen = hidden_polynomial(page)
         page.caution(warning.key, *hidden(page, True), polynomial=relation(unseen, advice.missed))  # noqa: FBT003
     elif warning.key == "huge_gain":
         page.caution(warning.key, limit=str(slots["limit"]))
     elif "pole" in slots:
-        root = (page.value(slots["pole"]) @ page.identity(n) - page["A"]).apply("det")
+        root = page("det({pole} I - A)", pole=slots["pole"])
         page.caution(warning.key, zero=_vanishing(page, advice, slots["zero"]), pole=relation(root, 0))
     elif warning.key == "zero_slow":
         numerator, factor = page["b_P"], slots["zero"]
@@ -378,13 +374,13 @@ def _caution(page: Builder, advice: PoleAdvice, warning: PoleWarning) -> None:
     elif "zero" in slots:
         page.caution(warning.key, zero=_vanishing(page, advice, slots["zero"]))
     elif warning.key == "no_response":
-        page.caution(warning.key, relation(page["b_P"], 0))
+        page.caution(warning.key, "b_P = 0")
 
 
 def _vanishing(page: Builder, advice: PoleAdvice, factor: Scalar) -> Relation:
     """Return b(z) = 0 for the root z of a linear factor, b(s) = factor · rest for another."""
     variable = page.plant.variable
     if factor.degree(variable) == 1:
-        return relation(page.value(-factor.coefficients(variable)[1]).apply("b_P_at"), 0)
+        return page.line("b_P_at({value}) = 0", value=-factor.coefficients(variable)[1])
     rest = advice.zeros.others * advice.zeros.polynomial / factor
-    return relation(page["b_P"], factor if rest.is_one else page.value(factor) @ page.value(rest))
+    return relation(page["b_P"], factor if rest.is_one else page("{factor} {rest}", factor=factor, rest=rest))

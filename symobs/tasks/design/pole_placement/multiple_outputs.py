@@ -23,7 +23,7 @@ from symobs.tasks.analysis.strata.loci import loci, maximal
 from symobs.tasks.design.pole_placement.brunovsky_chains import BrunovskyChains, cost, simple_gains, split_polynomial
 from symobs.tasks.design.pole_placement.single_output import ObserverPair
 from symobs.tasks.design.pole_placement.sylvester import charts_of, has_meaning
-from symobs.tasks.result import equality
+from symobs.tasks.result import equality, holds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -279,12 +279,12 @@ class Family:
             part = self.pair.part_of(self.general)
             values["L"] = part if answer["shift"] is None else part - transposed_for_task(answer["shift"])
         e = Environment(variable=self.pair.variable, values=values)
-        A_, C_, F, G, X = (e[name] for name in ("A", "C", "F", "G", "X"))
-        yield equality(A_.T @ X - X @ F, C_.T @ G, e)
+        G = e["G"]
+        yield holds(e, "A.T X - X F = C.T G")
         if self.general is not None:
-            yield equality(e["L"].T @ X, G, e)
+            yield holds(e, "L.T X = G")
         weights, first = Matrix.row(self.equation.weights), Matrix.unit(A.shape[0], 0).T
         yield equality(Term(Literal(weights), e) @ G, first, e)
-        yield Claim(relation(X.apply("det"), "!==", 0), e)
+        yield holds(e, "det(X) !== 0")
         rows = len(answer["parameters"]) - self.H.shape[0] * self.H.shape[1]
         yield equality(rows, A.shape[0] * (C.shape[0] - 1), e, "G has n*(p - 1) parameters")

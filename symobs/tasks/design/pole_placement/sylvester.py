@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
 #: Where placement by the equation comes from.
 SYLVESTER = "bhattacharyya1982"
-
-
 #: A general gain whose determinant could have more terms than this is not written out.
 WRITTEN_UP_TO = 60_000
 

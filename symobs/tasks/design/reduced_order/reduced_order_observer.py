@@ -12,11 +12,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 from symobs.exact import Ideal, Matrix, Root, Scalar, kernel, modulo, unit_rows
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.formula.tree import Environment
-from symobs.formula.tree.term import block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError
-from symobs.proof.certificate.claims import Certificate, Claim
-from symobs.proof.derivation.builder import relation
 from symobs.system import StateSpace
 from symobs.system.conditions import joined
 from symobs.system.specification import (
@@ -33,12 +30,13 @@ from symobs.tasks.analysis.strata.strata import equations_of, places, solved
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import chosen, design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
-from symobs.tasks.result import Case, Result, choose, equality, method, poles_of, task
+from symobs.tasks.result import Case, Result, choose, equality, holds, method, poles_of, task
 from symobs.tasks.result.control_systems import Controller, observer_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.proof.certificate.claims import Certificate, Claim
     from symobs.system.conditions import Condition
     from symobs.tasks.analysis.strata.strata import Place
 
@@ -194,27 +192,26 @@ class ReducedOrderObserver(Result):
         values |= {"phi": self.desired.polynomial, "R": T.select(range(plant.outputs, plant.order), columns)}
         e = Environment(variable=plant.variable, values=values)
         parts, inner = partition(plant, T), self.inner
-        yield equality(T.select(rows, columns), e["C"], e, "the upper rows of T are C")
+        yield holds(e, "{columns} = C", "the upper rows of T are C", columns=T.select(rows, columns))
         yield equality(parts.A22, inner.plant.matrices.A, e, "the inner gain is one for A22")
         yield equality(parts.A12, inner.plant.matrices.C, e, "the inner gain is one for A12")
-        yield equality(e["phi"], inner.answer["polynomial"], e, "the inner gain is one for phi(s)")
+        yield holds(e, "phi = {polynomial}", "the inner gain is one for phi(s)", polynomial=inner.answer["polynomial"])
         if (answer["L"] is None) != (inner.answer["L"] is None):
             raise CertificateRejected("there is a reduced-order observer exactly where the pair (A12, A22) has a gain")
         if answer["L"] is None:
             return
         if (answer["G"] is None) == plant.matrices.has_input:
             raise CertificateRejected("G belongs to a plant with an input, and to no other")
-        A, C, L, F, H, M, R = (e[name] for name in ("A", "C", "L", "F", "H", "M", "R"))
+        C, L, H, R = (e[name] for name in "CLHR")
         P = R - L @ C
-        yield equality(P @ A - F @ P, H @ C, e)
+        yield holds(e, "(R - L C) A - F (R - L C) = H C")
         if answer["G"] is not None:
             driven = P @ e["B"]
             if plant.matrices.has_feedthrough:
                 driven = driven - H @ e["D"]
-            yield equality(e["G"], driven, e)
-        yield equality(M @ block([[C], [P]]), identity(plant.order, e), e)
-        pencil = F.pencil
-        yield equality(pencil.apply("det"), e["phi"], e)
+            yield holds(e, "G = {driven}", driven=driven)
+        yield holds(e, "M [C; R - L C] = I")
+        yield holds(e, "det(pencil(F)) = phi")
 
     @property
     def systems(self) -> Mapping[str, Realisation]:
@@ -313,9 +310,8 @@ class DependentOutputs(ReducedOrderObserver):
     def claims(self) -> Iterator[Claim]:
         """Yield w C = 0 and w ≠ 0."""
         e = Environment(values=letters_of(self.plant) | {"w": self.answer["w"]})
-        w, m = e["w"], self.plant.matrices
-        yield equality(w @ e["C"], Matrix.zeros(1, m.C.shape[1]), e)
-        yield Claim(relation(w, "!==", Matrix.zeros(1, m.C.shape[0])), e)
+        yield holds(e, "w C = 0")
+        yield holds(e, "w !== 0")
         if any(self.answer[name] is not None for name in "LTFGHM"):
             raise CertificateRejected("outputs that depend on each other leave no observer of order n - p")
 

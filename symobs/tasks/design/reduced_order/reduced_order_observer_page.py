@@ -14,21 +14,17 @@ from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import case_steps, formula_of_factored, given, in_blocks
 from symobs.tasks.analysis.rank.observability import Observability
 from symobs.tasks.analysis.rank.rank_page import rank_cases, square_test
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
+from symobs.tasks.design.block_diagrams import draw_minimal_order
+from symobs.tasks.design.components import combination, summed
+from symobs.tasks.design.error_plots import plot_error
 from symobs.tasks.design.full_order.observer import undetermined
 from symobs.tasks.design.gain.gain_design import OBSERVER
 from symobs.tasks.design.gain.gain_page import define_test_matrix, say_as_required
-from symobs.tasks.design.page_parts import (
-    caution_poles,
-    combination,
-    define_gain,
-    draw_minimal_order,
-    gain_letters,
-    plot_error,
-    say_unassignable,
-    summed,
-)
+from symobs.tasks.design.named_gains import define_gain, gain_letters
+from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.reduced_order.reduced_order_observer import DependentOutputs, ReducedOrderObserver, partition
+from symobs.tasks.design.unassignable import say_unassignable
 from symobs.tasks.result import page_of
 
 if TYPE_CHECKING:
@@ -55,18 +51,18 @@ def write_undetermined(page: Builder, design: ReducedOrderObserver) -> None:
         name, rate + H @ page["y"], say="undetermined_ansatz", estimate=relation(page["x_2_hat"], z + L @ x_1)
     )
     page.signal("e_2", x_2 - page["x_2_hat"], silent=True)
-    fed = page["A_21"] - L @ page["A_11"] + F @ L
-    moving = F @ page["e_2"] + (fed - H) @ x_1 + (page["A_22"] - L @ page["A_12"] - F) @ x_2
-    choice = [relation(F, page["A_22"] - L @ page["A_12"]), relation(H, F @ L + page["A_21"] - L @ page["A_11"])]
+    fed = page("A_21 - {L} A_11", L=L) + F @ L
+    moving = page("{F} e_2 + {x_1} + (A_22 - {L} A_12 - {F}) {x_2}", F=F, x_1=(fed - H) @ x_1, L=L, x_2=x_2)
+    choice = [page.line("{F} = A_22 - {L} A_12", F=F, L=L), relation(H, F @ L + page["A_21"] - L @ page["A_11"])]
     if m.has_input:
-        wanted = page["B_2"] - L @ page["B_1"]
+        wanted = page("B_2 - {L} B_1", L=L)
         wanted = wanted - H @ page["D"] if m.has_feedthrough else wanted
         moving = moving + (wanted - page["G_z"]) @ u
         choice.insert(1, relation(page["G_z"], wanted))
-    error = relation(page["e_2"], x_2 - page["x_2_hat"])
-    page.equal(relation(page["e_2"].derivative, moving), say="undetermined_error", error=error)
+    error = page.line("e_2 = {x_2} - x_2_hat", x_2=x_2)
+    page.equal(page.line("e_2' = {moving}", moving=moving), say="undetermined_error", error=error)
     page.equal(*choice, say="undetermined_choice")
-    page.equal(relation(page["e_2"].derivative, F @ page["e_2"]), say="undetermined_left")
+    page.equal(page.line("e_2' = {F} e_2", F=F), say="undetermined_left")
 
 
 @page_of(ReducedOrderObserver)
@@ -76,14 +72,14 @@ def write_reduced_order(page: Builder, design: ReducedOrderObserver) -> None:
     write_observer_of_rest(page, design)
     if design.answer["L"] is not None:
         draw_minimal_order(page)
-        plot_error(page, "e_2", page["A_22"] - page["L"] @ page["A_12"])
+        plot_error(page, "e_2", page["A_22 - L A_12"])
 
 
 def _dependent_outputs(page: Builder, design: DependentOutputs) -> None:
     """Write the combination of outputs that vanishes."""
-    w = page.set("w_0", design.answer["w"])
+    page.set("w_0", design.answer["w"])
     zero = Matrix.zeros(1, page.plant.order)
-    page.conclude("outputs_dependent", row=relation(w, w.as_value), vanishes=relation(w @ page["C"], zero))
+    page.conclude("outputs_dependent", row=page.line("w_0 = #"), vanishes=page.line("w_0 C = {zero}", zero=zero))
 
 
 def write_observer_of_rest(page: Builder, design: ReducedOrderObserver) -> None:
@@ -158,16 +154,16 @@ def _coordinates(page: Builder, design: ReducedOrderObserver, *, known: bool = F
     for name, value in names.items():
         if value is not None:
             page.set(name, value)
-    stacked = block([[page["C"]], [page["R"]]])
+    stacked = page["[C; R]"]
     if trivial:
         page.set("T", parts.T)
-        page.conclude_silently(relation(page["T"], stacked))
+        page.conclude_silently("T = [C; R]")
     else:
         page.define("T", stacked, say="coordinates")
     exceptions = vanishing_factors([parts.T.determinant()], plant.symbols.signs)
     if exceptions:
         page.assume("coordinates_assumed", *exceptions)
-    whole, driven = [page["T"] @ page["A"] @ page["T"].inverse], [page["T"] @ page["B"]]
+    whole, driven = [page["T A T^-1"]], [page["T B"]]
     shown = _in_parts(page, whole, driven)
     if trivial:
         page.conclude_silently(*shown)
@@ -179,10 +175,10 @@ def _in_parts(page: Builder, whole: Sequence[Term], driven: Sequence[Term]) -> l
     """Return the blocks of A and B, those of measured and of other states divided by lines; what equals them before."""
     plant = page.plant
     sizes = [plant.outputs, plant.order - plant.outputs]
-    blocks = block([[page["A_11"], page["A_12"]], [page["A_21"], page["A_22"]]])
+    blocks = page["[A_11, A_12; A_21, A_22]"]
     shown = [relation(*whole, blocks, in_blocks(page, blocks.value, sizes, sizes))]
     if plant.matrices.has_input:
-        inputs = block([[page["B_1"]], [page["B_2"]]])
+        inputs = page["[B_1; B_2]"]
         shown.append(relation(*driven, inputs, in_blocks(page, inputs.value, sizes, [plant.inputs])))
     return shown
 
@@ -190,8 +186,8 @@ def _in_parts(page: Builder, whole: Sequence[Term], driven: Sequence[Term]) -> l
 def _parts(page: Builder, design: ReducedOrderObserver) -> None:
     """Write x₁ = C x and x₂ = R x with their equations, and Lemma 4.1."""
     trivial = page["T"].value == Matrix.identity(page.plant.order)
-    page.signal("x_1", page["C"] @ page["x"], silent=True)
-    page.signal("x_2", page["R"] @ page["x"], silent=True)
+    page.signal("x_1", "C x", silent=True)
+    page.signal("x_2", "R x", silent=True)
     x_1, x_2, u = page["x_1"], page["x_2"], page["u"]
     driven = page.plant.matrices.has_input
     first, second = [(page["A_11"], x_1), (page["A_12"], x_2)], [(page["A_21"], x_1), (page["A_22"], x_2)]
@@ -199,10 +195,10 @@ def _parts(page: Builder, design: ReducedOrderObserver) -> None:
         first.append((page["B_1"], u))
         second.append((page["B_2"], u))
     feedthrough = page.plant.matrices.has_feedthrough
-    known = page["y"] - page["D"] @ u if feedthrough else page["y"]
+    known = page["y - D u"] if feedthrough else page["y"]
     said: dict[str, Any] = {
-        "measured": relation(x_1, page["C"] @ page["x"], known),
-        "unmeasured": relation(x_2, (page["R"].as_value if trivial else page["R"]) @ page["x"]),
+        "measured": page.line("x_1 = C x = {known}", known=known),
+        "unmeasured": relation(x_2, (page["#R"] if trivial else page["R"]) @ page["x"]),
     }
     key = "parts_with_feedthrough" if feedthrough else "parts"
     lines = [(x_1, first), (x_2, second)]
@@ -224,21 +220,25 @@ def _parts(page: Builder, design: ReducedOrderObserver) -> None:
 def _observer(page: Builder, design: ReducedOrderObserver) -> None:
     """Write (4.37) and (4.38), the gain a matrix of unknowns."""
     gain = page.set("L", gain_letters(page, "L", design.answer["L"])).value
-    L, x_1, x_2_hat, u = (page[name] for name in ("L", "x_1", "x_2_hat", "u"))
-    copy = page["A_21"] @ x_1 + page["A_22"] @ x_2_hat
-    innovation = x_1.derivative - page["A_11"] @ x_1
+    x_2_hat = page["x_2_hat"]
+    copy = page["A_21 x_1 + A_22 x_2_hat"]
+    innovation = page["x_1' - A_11 x_1"]
     if page.plant.matrices.has_input:
-        copy, innovation = copy + page["B_2"] @ u, innovation - page["B_1"] @ u
-    page.dynamics("x_2_hat", copy + L @ (innovation - page["A_12"] @ x_2_hat), say="reduced_observer")
+        copy, innovation = copy + page["B_2 u"], innovation - page["B_1 u"]
+    page.dynamics(
+        "x_2_hat",
+        page("{copy} + L ({innovation} - A_12 x_2_hat)", copy=copy, innovation=innovation),
+        say="reduced_observer",
+    )
     if page.plant.outputs == 1 and len(gain.entries) <= readability.UNKNOWN_ENTRIES:
         pairs = _collected(page)
         if sum(matrix.value.size for matrix, _ in pairs) <= readability.OUTPUT_DERIVATIVE:
             page.equal(relation(x_2_hat.derivative, combination(page, pairs)), say="with_gain_unknown")
-    page.signal("e_2", page["x_2"] - page["x_2_hat"], silent=True)
+    page.signal("e_2", "x_2 - x_2_hat", silent=True)
     page.equal(
-        relation(page["e_2"].derivative, _error_matrix(page) @ page["e_2"]),
+        page.line("e_2' = {error_matrix} e_2", error_matrix=_error_matrix(page)),
         say="reduced_error",
-        error=relation(page["e_2"], page["x_2"] - page["x_2_hat"]),
+        error=page.line("e_2 = x_2 - x_2_hat"),
     )
 
 
@@ -246,12 +246,11 @@ def _mere_copy(page: Builder) -> None:
     """Write a first attempt: the estimate takes x₁ from the measurement, so its output error is 0 and corrects nothing."""
     if not any(page["A_12"].value.entries):  # then no observer does better
         return
-    x_2, x_2_hat = page["x_2"], page["x_2_hat"]
-    copy = page["A_21"] @ page["x_1"] + page["A_22"] @ x_2_hat
+    copy = page["A_21 x_1 + A_22 x_2_hat"]
     if page.plant.matrices.has_input:
-        copy = copy + page["B_2"] @ page["u"]
-    page.remark("mere_copy", left=relation(x_2.derivative - copy, page["A_22"] @ (x_2 - x_2_hat)))
-    own = (page.s @ page.identity(page["A_22"].value.shape[0]) - page["A_22"]).apply("det")
+        copy = page("{copy} + B_2 u", copy=copy)
+    page.remark("mere_copy", left=page.line("x_2' - {copy} = A_22 (x_2 - x_2_hat)", copy=copy))
+    own = page["det(s I - A_22)"]
     plant = page.plant
     if stability(own.scalar, plant.variable, plant.symbols.signs, discrete=plant.is_discrete).verdict == "no":
         unstable = predicate("unstable", own)
@@ -262,12 +261,11 @@ def _mere_copy(page: Builder) -> None:
 
 
 def _error_matrix(page: Builder) -> Term:
-    return page["A_22"] - page["L"] @ page["A_12"]
+    return page["A_22 - L A_12"]
 
 
 def _determinant(page: Builder) -> Term:
-    order = page.plant.order - page.plant.outputs
-    return (page.s @ page.identity(order) - page["A_22"] + page["L"] @ page["A_12"]).apply("det")
+    return page["det(s I - A_22 + L A_12)"]
 
 
 def write_inner_gain(page: Builder, design: ReducedOrderObserver) -> None:
@@ -316,26 +314,26 @@ def observer_state(page: Builder) -> str:
 def _collected(page: Builder) -> list[tuple[Term, Term]]:
     """Return (4.39): the signals of the right-hand side with their matrices, the derivative of x₁ among them."""
     L, x_1 = page["L"], page["x_1"]
-    pairs = [(_error_matrix(page), page["x_2_hat"]), (page["A_21"] - L @ page["A_11"], x_1)]
+    pairs = [(_error_matrix(page), page["x_2_hat"]), (page["A_21 - L A_11"], x_1)]
     if page.plant.matrices.has_input:
-        pairs.append((page["B_2"] - L @ page["B_1"], page["u"]))
+        pairs.append((page["B_2 - L B_1"], page["u"]))
     return [*pairs, (L, x_1.derivative)]
 
 
 def _without_derivative(page: Builder) -> None:
     """Write (4.39) and (4.40): z = x̂₂ − L x₁ in place of x̂₂."""
-    m, L, u, x_1, x_2_hat = page.plant.matrices, page["L"], page["u"], page["x_1"], page["x_2_hat"]
+    m, x_1, x_2_hat = page.plant.matrices, page["x_1"], page["x_2_hat"]
     name = observer_state(page)
-    page.signal(name, x_2_hat - L @ x_1, silent=True)
+    page.signal(name, "x_2_hat - L x_1", silent=True)
     z, closed = page[name], _error_matrix(page)
-    rate, fed = closed @ z, closed @ L + page["A_21"] - L @ page["A_11"]
+    rate, fed = closed @ z, page("{closed} L + A_21 - L A_11", closed=closed)
     if m.has_input:
-        rate = rate + (page["B_2"] - L @ page["B_1"]) @ u
+        rate = page("{rate} + (B_2 - L B_1) u", rate=rate)
     page.equal(relation(x_2_hat.derivative, summed(_collected(page))), say="right_side_collected")
     page.equal(
         relation(z.derivative, rate + fed @ x_1),
         say="next_output" if page.plant.is_discrete else "derivative_of_output",
-        state=relation(z, page["x_2_hat"] - L @ x_1),
+        state=page.line(f"{name} = x_2_hat - L x_1"),
     )
 
 
@@ -348,36 +346,37 @@ def _assembled(page: Builder, design: ReducedOrderObserver, say: tuple[str, str]
         pairs.append((page["G_z"], u))
     pairs.append((page["H_z"], page["y"]))
     page.equal(relation(z.derivative, summed(pairs), combination(page, pairs)), say="reduced_final", answer=True)
-    output = page["y"] - page["D"] @ u if m.has_feedthrough else page["y"]
+    output = page["y - D u"] if m.has_feedthrough else page["y"]
     stacked = block([[output], [z]])
     order, outputs = page.plant.order - page.plant.outputs, page.plant.outputs
     corner = page.value(Matrix.zeros(outputs, order))
-    lift = block([[page.identity(outputs), corner], [L, page.identity(order)]])
-    page.define("M_z", page["T"].inverse @ lift, silent=True)
+    above, below = page.identity(outputs), page.identity(order)
+    lift = page("[{above}, {corner}; L, {below}]", above=above, corner=corner, below=below)
+    page.define("M_z", page["T^-1"] @ lift, silent=True)
     page.signal("x_hat", page["M_z"] @ stacked, silent=True)
-    estimate = block([[x_1], [page["x_2_hat"]]])
+    estimate = page["[x_1; x_2_hat]"]
     single = order == outputs == 1 and not m.has_feedthrough
     numbers = [combination(page, [(page.value(Matrix.identity(1)), z), (L, page["y"])])] if single else []
     page.equal(relation(page["x_2_hat"], z + L @ x_1, *numbers), say=say[1])
     trivial = page["T"].value == Matrix.identity(page.plant.order)
     page.equal(
-        relation(page["x_hat"], estimate if trivial else page["T"].inverse @ estimate, page["M_z"].as_value @ stacked),
+        relation(page["x_hat"], estimate if trivial else page["T^-1 [x_1; x_2_hat]"], page["#M_z"] @ stacked),
         say="assembled",
         answer=True,
     )
-    unseen = block([[corner @ page["e_2"]], [page["e_2"]]])
-    page.conclude_silently(relation(page["x"] - page["x_hat"], page["T"].inverse @ unseen))
+    unseen = page("[{corner} e_2; e_2]", corner=corner)
+    page.conclude_silently(page.line("x - x_hat = T^-1 {unseen}", unseen=unseen))
 
 
 def _matrices(page: Builder, design: ReducedOrderObserver, say: str, *, closing: bool = True) -> None:
     """Write F = A₂₂ − L A₁₂, H = F L + A₂₁ − L A₁₁, G = B₂ − L B₁, which a feedthrough changes by −H D."""
-    L, m = page["L"], page.plant.matrices
+    m = page.plant.matrices
     page.define("F_z", _error_matrix(page), say=say, closing=closing)
     if m.has_input and not m.has_feedthrough:
-        page.define("G_z", page["B_2"] - L @ page["B_1"], closing=closing)
-    page.define("H_z", page["F_z"] @ L + page["A_21"] - L @ page["A_11"], closing=closing)
+        page.define("G_z", "B_2 - L B_1", closing=closing)
+    page.define("H_z", "F_z L + A_21 - L A_11", closing=closing)
     if m.has_input and m.has_feedthrough:
-        page.define("G_z", page["B_2"] - L @ page["B_1"] - page["H_z"] @ page["D"], closing=closing)
+        page.define("G_z", "B_2 - L B_1 - H_z D", closing=closing)
     page.conclude_silently(
         *(relation(page[f"{name}_z"], design.answer[name]) for name in "FGH" if design.answer[name] is not None)
     )
@@ -387,8 +386,8 @@ def _fixed_modes(page: Builder, design: ReducedOrderObserver) -> Term:
     """Introduce the part of x₂ that A₁₂ does not show; return its polynomial."""
     pair = design.inner.pair
     page.set("N_2", pair.kernel)
-    X = page.set("X_2", pair.restricted)
-    return (page.s @ page.identity(pair.kernel.shape[1]) - X).apply("det")
+    page.set("X_2", pair.restricted)
+    return page["det(s I - X_2)"]
 
 
 def _impossible(page: Builder, design: ReducedOrderObserver) -> None:

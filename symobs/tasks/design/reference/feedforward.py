@@ -12,14 +12,14 @@ from symobs.formula.tree import Environment
 from symobs.formula.tree.term import Term, block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
-from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation import CaseStep, Conclude
 from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.system.conditions import joined, nonzero, vanishing_factors
 from symobs.tasks.analysis.page_parts import factored_form, formula_of_factored
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import common_places, places
-from symobs.tasks.design import page_parts as readability
+from symobs.tasks.design import readability
+from symobs.tasks.design.block_diagrams import draw_feedforward, draw_state_feedforward
 from symobs.tasks.design.compensator.compensator import KnownState, observer_based, observer_order, of_known_state
 from symobs.tasks.design.compensator.compensator_page import caution_law
 from symobs.tasks.design.compensator.minimal_order_compensator import MinimalOrderCompensator
@@ -30,12 +30,12 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
 )
 from symobs.tasks.design.compensator.of_loop import OfLoop
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, letters_of
-from symobs.tasks.design.page_parts import draw_feedforward, draw_state_feedforward
-from symobs.tasks.result import Result, choose, equality, method, page_of, poles_of, task
+from symobs.tasks.result import Result, choose, equality, holds, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.proof.certificate.claims import Claim
     from symobs.system import StateSpace
     from symobs.system.conditions import Condition
     from symobs.system.specification import GainText, Name, Poles, PolynomialText
@@ -124,17 +124,17 @@ class FeedforwardDesign(OfLoop):
             still = A @ e["x_0"] - B @ K_ @ e["x_0"]
             there = e["x_0"] if self.plant.is_discrete else Matrix.zeros(order, 1)
             yield equality(still, there, e, "a mode never comes to rest")
-            yield Claim(relation(e["x_0"], "!==", Matrix.zeros(order, 1)), e)
+            yield holds(e, "x_0 !== 0")
             return
         rest = (one - A + B @ K_ if self.plant.is_discrete else B @ K_ - A).inverse
         at_rest = (C - D @ K_) @ rest @ B + D
         if w is not None:
-            yield equality(e["w"] @ at_rest, Matrix.zeros(1, self.plant.inputs), e)
-            yield Claim(relation(e["w"], "!==", Matrix.zeros(1, self.plant.outputs)), e)
+            yield holds(e, "w {at_rest} = 0", at_rest=at_rest)
+            yield holds(e, "w !== 0")
             return
-        F_, T, s = e["F"], e["T_v"], e["s"]
-        yield equality(at_rest @ F_, identity(self.plant.outputs, e), e)
-        yield equality(T, (C - D @ K_) @ (s @ one - A + B @ K_).inverse @ B @ F_ + D @ F_, e)
+        F_ = e["F"]
+        yield holds(e, "{at_rest} F = I", at_rest=at_rest)
+        yield holds(e, "T_v = (C - D K) (s I - A + B K)^-1 B F + D F")
         if isinstance(self.loop, KnownState):
             return
         errors = self.loop.error_coordinates.shape[0] - order
@@ -143,7 +143,7 @@ class FeedforwardDesign(OfLoop):
         seen = block([[C - D @ K_, D @ K_e]])
         driven = block([[B @ F_], [nothing]])
         whole = seen @ A_cl.pencil.inverse @ driven + D @ F_
-        yield equality(zero["T_v"], whole, zero, "the whole loop with its error responds alike")
+        yield holds(zero, "T_v = {whole}", "the whole loop with its error responds alike", whole=whole)
 
     @property
     def systems(self) -> Mapping[str, Realisation]:
@@ -316,22 +316,22 @@ def write_feedforward(page: Builder, design: FeedforwardDesign) -> None:
 
 def _at_rest(page: Builder) -> Term:
     """Return (C − DK)(−A + BK)⁻¹B + D, in discrete time (C − DK)(I − A + BK)⁻¹B + D."""
-    A, B, C, K = (page[name] for name in "ABCK")
-    closed = B @ K - A
+    B, C = page["B"], page["C"]
+    closed = page["B K - A"]
     if page.plant.is_discrete:
-        closed = page.identity(page.plant.order) - A + B @ K
+        closed = page["I - A + B K"]
     if not page.plant.matrices.has_feedthrough:
         return C @ closed.inverse @ B
-    return (C - page["D"] @ K) @ closed.inverse @ B + page["D"]
+    return page("(C - D K) {inverse} B + D", inverse=closed.inverse)
 
 
 def _impossible(page: Builder, design: FeedforwardDesign) -> None:
     """Write that the loop never comes to rest, or the gain at rest has dependent rows, whatever K is."""
     if design.answer["stuck"] is not None:
         x = page.set("x_0", design.answer["stuck"])
-        moved = (page["A"] - page["B"] @ page["K"]) @ x
+        moved = page["(A - B K) x_0"]
         there = x if page.plant.is_discrete else page.value(Matrix.zeros(page.plant.order, 1))
-        page.conclude("no_rest", state=relation(x, x.as_value), still=relation(moved, there))
+        page.conclude("no_rest", state=page.line("x_0 = #"), still=relation(moved, there))
         return
     page.define("G_0", _at_rest(page), say="gain_at_rest")
     m = page.plant.matrices
@@ -342,10 +342,10 @@ def _impossible(page: Builder, design: FeedforwardDesign) -> None:
         )
         return
     if page["G_0"].value.shape == (1, 1):
-        page.conclude("no_feedforward_single", relation(page["G_0"], Matrix.zeros(1, 1)))
+        page.conclude("no_feedforward_single", "G_0 = 0")
         return
-    w = page.set("w_0", design.answer["w"])
-    slots = {"row": relation(w, w.as_value), "vanishes": relation(w @ page["G_0"], Matrix.zeros(1, page.plant.inputs))}
+    page.set("w_0", design.answer["w"])
+    slots = {"row": page.line("w_0 = #"), "vanishes": page.line("w_0 G_0 = 0")}
     found = relation(_response(page).apply("rank"), whole)
     if whole < page.plant.outputs:
         page.conclude("no_feedforward_low", rank=found, **slots)
@@ -355,9 +355,8 @@ def _impossible(page: Builder, design: FeedforwardDesign) -> None:
 
 def _response(page: Builder) -> Term:
     """Return C(sI − A)⁻¹B + D."""
-    resolvent = page["A"].pencil.inverse
-    response = page["C"] @ resolvent @ page["B"]
-    return response + page["D"] if page.plant.matrices.has_feedthrough else response
+    response = page["C pencil(A)^-1 B"]
+    return page["C pencil(A)^-1 B + D"] if page.plant.matrices.has_feedthrough else response
 
 
 def _loop(page: Builder, design: FeedforwardDesign, *, minimal: bool) -> None:
@@ -372,31 +371,38 @@ def _loop(page: Builder, design: FeedforwardDesign, *, minimal: bool) -> None:
         partitioned_gain(page)
         page.signal(
             "u",
-            -page["K_1"] @ page["x_1"] - page["K_2"] @ page["x_2_hat"] + page["F_v"] @ page["v_r"],
+            "(-K_1) x_1 - K_2 x_2_hat + F_v v_r",
             say="feedforward_law",
         )
     else:
-        page.signal("u", -page["K"] @ page["x_hat"] + page["F_v"] @ page["v_r"], say="feedforward_law")
-    A, B, C, K, F_v = (page[name] for name in ("A", "B", "C", "K", "F_v"))
+        page.signal("u", "(-K) x_hat + F_v v_r", say="feedforward_law")
+    C, K = page["C"], page["K"]
     x, v, error = page["x"], page["v_r"], page["e_2" if minimal else "e"]
     coupling = page["K_2"] if minimal else K
-    own = page["A_22"] - page["L"] @ page["A_12"] if minimal else A - page["L"] @ C
+    own = page["A_22 - L A_12"] if minimal else page["A - L C"]
     lines = [
-        relation(x.derivative, (A - B @ K) @ x + B @ coupling @ error + B @ F_v @ v),
+        page.line("x' = (A - B K) x + B {coupling} {error} + B F_v v_r", coupling=coupling, error=error),
         relation(error.derivative, own @ error),
     ]
     output = C @ x
     if m.has_feedthrough:
-        D = page["D"]
-        output = (C - D @ K) @ x + D @ coupling @ error + D @ F_v @ v
+        output = page("(C - D K) x + D {coupling} {error} + D F_v v_r", coupling=coupling, error=error)
     page.equal(*lines, relation(page["y"], output), say="feedforward_loop")
     errors = design.loop.error_coordinates.shape[0] - plant.order
     zero = page.value(Matrix.zeros(errors, plant.order))
-    page.define("A_cl", block([[A - B @ K, B @ coupling], [zero, own]]), silent=True, closing=False)
-    state, driven = block([[x], [error]]), block([[B @ F_v], [page.value(Matrix.zeros(errors, plant.outputs))]])
+    page.define(
+        "A_cl",
+        page("[A - B K, B {coupling}; {zero}, {own}]", coupling=coupling, zero=zero, own=own),
+        silent=True,
+        closing=False,
+    )
+    state, driven = (
+        page("[x; {error}]", error=error),
+        page("[B F_v; {value}]", value=Matrix.zeros(errors, plant.outputs)),
+    )
     page.conclude_silently(relation(state.derivative, page["A_cl"] @ state + driven @ v))
-    determinant = page["A_cl"].pencil.apply("det")
-    of_rest = page["A_22"].pencil + page["L"] @ page["A_12"] if minimal else None
+    determinant = page["det(pencil(A_cl))"]
+    of_rest = page["pencil(A_22) + L A_12"] if minimal else None
     of_error = OBSERVER.error_determinant(page) if of_rest is None else of_rest.apply("det")
     parts_of = FEEDBACK.error_determinant(page) @ of_error
     product = page.term(formula_of_factored(design.loop.loop_polynomial))
@@ -405,10 +411,10 @@ def _loop(page: Builder, design: FeedforwardDesign, *, minimal: bool) -> None:
 
 def _loop_of_state(page: Builder, loop: KnownState) -> None:
     """Write u = −K x + F v, and what becomes of state and output."""
-    A, B, C, K, F_v, x, v = (page[name] for name in ("A", "B", "C", "K", "F_v", "x", "v_r"))
-    page.signal("u", -K @ x + F_v @ v, say="feedforward_law")
-    output = (C - page["D"] @ K) @ x + page["D"] @ F_v @ v if page.plant.matrices.has_feedthrough else C @ x
-    rate = relation(x.derivative, (A - B @ K) @ x + B @ F_v @ v)
+    C, x = page["C"], page["x"]
+    page.signal("u", "(-K) x + F_v v_r", say="feedforward_law")
+    output = page["(C - D K) x + D F_v v_r"] if page.plant.matrices.has_feedthrough else C @ x
+    rate = page.line("x' = (A - B K) x + B F_v v_r")
     page.equal(rate, relation(page["y"], output), say="feedforward_state")
     product = page.term(formula_of_factored(loop.loop_polynomial))
     page.equal(relation(FEEDBACK.error_determinant(page), product), say="feedforward_state_polynomial")
@@ -417,22 +423,21 @@ def _loop_of_state(page: Builder, loop: KnownState) -> None:
 def _gain(page: Builder, design: FeedforwardDesign) -> None:
     """Write F from the gain at rest, and the transfer function from v to y."""
     plant, m = page.plant, page.plant.matrices
-    A, B, C, K, F_v = (page[name] for name in ("A", "B", "C", "K", "F_v"))
+    F_v = page["F_v"]
     factors = vanishing_factors([value.numerator for value in design.existence], plant.symbols.signs)
     if factors:
         page.assume("feedforward_assumed", *factors)
     page.define("G_0", _at_rest(page), say="gain_at_rest")
     G = page["G_0"]
     if plant.inputs == plant.outputs:
-        page.equal(relation(F_v, G.inverse, F_v.as_value), say="feedforward_gain", answer=True)
+        page.equal("F_v = G_0^-1 = #", say="feedforward_gain", answer=True)
     else:
-        page.equal(relation(F_v, G.T @ (G @ G.T).inverse, F_v.as_value), say="feedforward_smallest", answer=True)
-    one = page.identity(plant.outputs) if plant.outputs > 1 else page.value(1)
+        page.equal("F_v = G_0.T (G_0 G_0.T)^-1 = #", say="feedforward_smallest", answer=True)
+    one = page.identity(plant.outputs) if plant.outputs > 1 else page["1"]
     page.verified("as_required", check=relation(G @ F_v, one))
-    resolvent = (A.pencil + B @ K).inverse
-    response = C @ resolvent @ B @ F_v
+    response = page["C (pencil(A) + B K)^-1 B F_v"]
     if m.has_feedthrough:
-        response = (C - page["D"] @ K) @ resolvent @ B @ F_v + page["D"] @ F_v
+        response = page["(C - D K) (pencil(A) + B K)^-1 B F_v + D F_v"]
     T = design.answer["transfer_function"]
     say = "feedforward_state_response" if isinstance(design.loop, KnownState) else "feedforward_response"
     if isinstance(T, Scalar):

@@ -19,7 +19,6 @@ from symobs.formula.tree import Environment, Evaluated, Literal
 from symobs.formula.tree.term import Term, block, identity
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected
-from symobs.proof.certificate.claims import Certificate, Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.stability.criteria.stability import stability
 from symobs.system import StateSpace
@@ -29,24 +28,22 @@ from symobs.tasks.analysis.page_parts import case_steps, given, say_stability
 from symobs.tasks.analysis.strata.loci import distance_from, loci
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import found_once, outside, region_of, solved
+from symobs.tasks.design.block_diagrams import draw_integral_action
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_where
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
-from symobs.tasks.design.page_parts import (
-    OUTPUT_DERIVATIVE,
-    UNKNOWN_ENTRIES,
-    caution_poles,
-    draw_integral_action,
-    gain_letters,
-    say_unassignable,
-)
-from symobs.tasks.result import Case, Result, choose, equality, method, page_of, poles_of, task
+from symobs.tasks.design.named_gains import gain_letters
+from symobs.tasks.design.pole_cautions import caution_poles
+from symobs.tasks.design.readability import OUTPUT_DERIVATIVE, UNKNOWN_ENTRIES
+from symobs.tasks.design.unassignable import say_unassignable
+from symobs.tasks.result import Case, Result, choose, equality, holds, method, page_of, poles_of, task
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.formula.tree import Relation
+    from symobs.proof.certificate.claims import Certificate, Claim
     from symobs.system.conditions import Condition
     from symobs.system.specification import Name, Poles, PolynomialText
 
@@ -136,8 +133,8 @@ class IntegralAction(Result):
             beside = replace(e, relations=(*relations, *outside(self.distances)), signs=plant.symbols.signs)
             yield equality(whole.apply("rank"), size, beside)
         else:
-            yield equality(e["w"] @ whole, Matrix.zeros(1, plant.order + plant.inputs), e)
-            yield Claim(relation(e["w"], "!==", Matrix.zeros(1, size)), e)
+            yield holds(e, "w {whole} = 0", whole=whole)
+            yield holds(e, "w !== 0")
         if K is not None:
             both = block([[e["K"], -e["k_I"]]])
             yield equality(both, self.loop.answer["K"], e, "[K, -k_I] is the feedback of plant and integrator")
@@ -306,9 +303,8 @@ def write_integral_action(page: Builder, design: IntegralAction) -> None:
         _extended(page)
         _design(page, design)
         if design.answer["K"] is not None:
-            state = block([[page["x"]], [page["xi_I"]]])
             page.equal(
-                relation(state.derivative, page["A_cl"] @ state + _enters(page) @ page["r_in"]), say="integral_closed"
+                page.line("[x; xi_I]' = A_cl [x; xi_I] + {enters} r_in", enters=_enters(page)), say="integral_closed"
             )
             if not page.plant.is_discrete:
                 draw_integral_action(page)
@@ -327,18 +323,17 @@ def _case(page: Builder, design: IntegralAction) -> None:
 def _extended(page: Builder) -> None:
     """Write ξ' = r − y, and both equations together."""
     kind = "discrete" if page.plant.is_discrete else "continuous"
-    xi, error = page["xi_I"], page["r_in"] - page["y"]
+    xi, error = page["xi_I"], page["r_in - y"]
     page.dynamics("xi_I", xi + error if page.plant.is_discrete else error, say=f"integral_state_{kind}")
     plant, m = page.plant, page.plant.matrices
     n, p = plant.order, plant.outputs
     corner = page.identity(p) if plant.is_discrete else page.value(Matrix.zeros(p, p))
-    parts = block([[page["A"], page.value(Matrix.zeros(n, p))], [-page["C"], corner]])
+    parts = page("[A, {p}; -C, {corner}]", p=Matrix.zeros(n, p), corner=corner)
     page.define("A_hat", parts, say="integral_extended")
-    below = -page["D"] if m.has_feedthrough else page.value(Matrix.zeros(p, plant.inputs))
-    page.define("B_hat", block([[page["B"]], [below]]))
-    state = block([[page["x"]], [xi]])
-    driven = page["B_hat"] @ page["u"] + _enters(page) @ page["r_in"]
-    page.equal(relation(state.derivative, page["A_hat"] @ state + driven), say="integral_together")
+    below = page["-D"] if m.has_feedthrough else page.value(Matrix.zeros(p, plant.inputs))
+    page.define("B_hat", page("[B; {below}]", below=below))
+    driven = page("B_hat u + {enters} r_in", enters=_enters(page))
+    page.equal(page.line("[x; xi_I]' = A_hat [x; xi_I] + {driven}", driven=driven), say="integral_together")
 
 
 def _name_extended(page: Builder) -> None:
@@ -370,14 +365,14 @@ def _design(page: Builder, design: IntegralAction, *, is_case: bool = False) -> 
     if design.fields["family"] is not None:
         page.remark("integral_family")
     if not is_case:
-        page.signal("u", -page["K"] @ page["x"] + page["k_I"] @ page["xi_I"], say="integral_law")
+        page.signal("u", "(-K) x + k_I xi_I", say="integral_law")
     _closed_loop(page)
 
 
 def _system_matrix(page: Builder) -> Term:
     A, plant = page["A"], page.plant
     D = page["D"] if plant.matrices.has_feedthrough else page.value(plant.matrices.D)
-    return block([[A - page.identity(plant.order) if plant.is_discrete else A, page["B"]], [page["C"], D]])
+    return block([[page["A - I"] if plant.is_discrete else A, page["B"]], [page["C"], D]])
 
 
 def _controllability(page: Builder) -> Relation:
@@ -395,9 +390,9 @@ def _say_condition(page: Builder, design: IntegralAction) -> None:
     size, place = plant.order + plant.outputs, "one" if plant.is_discrete else "origin"
     whole, controllable = _system_matrix(page), _controllability(page)
     if design.answer["w"] is not None:
-        row = page.set("w_0", design.answer["w"])
-        annuls = relation(row @ whole, Matrix.zeros(1, plant.order + plant.inputs))
-        page.conclude("integral_blocked", row=relation(row, row.as_value), annuls=annuls)
+        page.set("w_0", design.answer["w"])
+        annuls = page.line("w_0 {whole} = 0", whole=whole)
+        page.conclude("integral_blocked", row=page.line("w_0 = #"), annuls=annuls)
     elif len(controllable.operators) > 1:
         page.conclude("integral_uncontrollable", rank=controllable)
     else:
@@ -409,8 +404,8 @@ def _impossible(page: Builder, design: IntegralAction) -> None:
     """Write that the modes of plant and integrator that no gain moves are not among the desired poles."""
     pair = design.loop.pair
     page.set("N_K", pair.kernel)
-    X = page.set("X_K", pair.restricted)
-    fixed = X.pencil.apply("det")
+    page.set("X_K", pair.restricted)
+    fixed = page["det(pencil(X_K))"]
     say_unassignable(
         page,
         ("integral_impossible", "integral_unassignable"),
@@ -425,17 +420,18 @@ def _impossible(page: Builder, design: IntegralAction) -> None:
 def _gains(page: Builder, design: IntegralAction) -> None:
     """Write [K, −k_I] of the extended plant, and its parts."""
     plant, gain = page.plant, design.loop.answer["K"]
-    K, k_I = page.set("K", design.answer["K"]), page.set("k_I", design.answer["k_I"])
-    both = block([[K, -k_I]])
-    A_hat, B_hat = page["A_hat"], page["B_hat"]
+    _K, _k_I = page.set("K", design.answer["K"]), page.set("k_I", design.answer["k_I"])
+    both = page["[K, -k_I]"]
     compared = plant.inputs == 1 and design.fields["family"] is None and _compare(page, gain, design.desired)
     page.equal(relation(both, gain), say="hence_gain" if compared else "integral_gains")
-    page.equal(relation(K, K.as_value), say="integral_parts", answer=True)
-    page.equal(relation(k_I, k_I.as_value), answer=True)
-    pencil = A_hat.pencil + B_hat @ both
-    page.verified("as_required", check=relation(pencil.apply("det"), page.value(design.desired.polynomial)))
+    page.equal("K = #", say="integral_parts", answer=True)
+    page.equal("k_I = #", answer=True)
+    page.verified(
+        "as_required",
+        check=page.line("det(pencil(A_hat) + B_hat [K, -k_I]) = {polynomial}", polynomial=design.desired.polynomial),
+    )
     if not design.desired.is_numeric:
-        say_stability(page, pencil.apply("det"))
+        say_stability(page, page["det(pencil(A_hat) + B_hat [K, -k_I])"])
 
 
 def _compare(page: Builder, gain: Matrix, desired: DesiredPolynomial) -> bool:
@@ -445,7 +441,7 @@ def _compare(page: Builder, gain: Matrix, desired: DesiredPolynomial) -> bool:
     before = page.environment
     row = page.value(gain_letters(page, "K", gain))
     variable = page.plant.variable
-    loop = (page["A_hat"].pencil + page["B_hat"] @ row).apply("det")
+    loop = page("det(pencil(A_hat) + B_hat {row})", row=row)
     coefficients = loop.scalar.coefficients(variable)
     if sum(coefficient.size for coefficient in coefficients) > OUTPUT_DERIVATIVE:
         page.environment = before
@@ -468,17 +464,16 @@ def _at_rest(page: Builder, design: IntegralAction) -> None:
     zero = design.desired.polynomial.substitute({plant.variable: Scalar.of(int(plant.is_discrete))})
     if zero.is_zero:
         return
-    C, k_I, size = page["C"], page["k_I"], plant.order + plant.outputs
+    C = page["C"]
     corner, seen = page.value(Matrix.zeros(plant.outputs, plant.outputs)), C
     if plant.matrices.has_feedthrough:
-        seen, corner = C - page["D"] @ page["K"], page["D"] @ k_I
-    rest = (page.identity(size) - A_cl if plant.is_discrete else -A_cl).inverse
+        seen, corner = page["C - D K"], page["D k_I"]
+    rest = (page["I - A_cl"] if plant.is_discrete else -A_cl).inverse
     gain = block([[seen, corner]]) @ rest @ _enters(page)
     at_rest = relation(gain, Matrix.identity(plant.outputs))
     asked, discrete = design.desired, plant.is_discrete
     if asked.is_numeric and stability(asked.polynomial, plant.variable, {}, discrete=discrete).verdict == "yes":
-        loop = A_cl.pencil.apply("det")
-        has_poles = relation(loop, page["phi_c"])
+        has_poles = page.line("det(pencil(A_cl)) = phi_c")
         page.conclude("integral_rest_stable", has_poles, predicate("stable", page["phi_c"]), gain=at_rest)
     else:
         page.conclude("integral_rest", gain=at_rest)

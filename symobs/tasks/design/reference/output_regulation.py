@@ -7,6 +7,8 @@ eigenvalues λ of S.  Where they have none there are U and V with U A + V C = S 
 
 from __future__ import annotations
 
+import itertools
+import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
@@ -20,6 +22,7 @@ from symobs.exact import (
     modulo,
     product_of,
     rank,
+    resultant,
     roots_of,
     solve_or_refute,
 )
@@ -45,7 +48,7 @@ from symobs.tasks.design.disturbance.disturbance_observer import (
 from symobs.tasks.design.gain.gain_cases import places_beside
 from symobs.tasks.design.gain.gain_design import FEEDBACK, page_style
 from symobs.tasks.design.gain.gain_page import write_gain
-from symobs.tasks.design.page_parts import caution_poles
+from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.result import Case, Result, choose, holds, method, page_of, poles_of, task
 from symobs.tasks.result.control_systems import Controller
 
@@ -174,7 +177,7 @@ class OutputRegulation(Result):
             raise CertificateRejected(message)
         e = self.meanings(**self.exogenous._asdict())
         if K is not self.loop.answer["K"]:
-            yield holds(e, "K = {K}", "K is the certified gain", K=self.loop.answer["K"])
+            yield holds(e, "K = {value}", "K is the certified gain", value=self.loop.answer["K"])
         if U is not None:
             yield holds(e, "U*A + V*C = S*U")
             yield holds(e, "U*B + V*D = 0")
@@ -241,7 +244,18 @@ class OutputRegulation(Result):
             )
             return found
 
-        return solved(self.plant, {frozenset(place.when): place for place in self._places}.values(), on)
+        places_asked = {frozenset(place.when): place for place in self._places}
+        beside = {frozenset(place.when): place for place in _drops(self.plant, self.exogenous.S)}
+        also = [place for when, place in beside.items() if when not in places_asked]
+        more = (case for case in solved(self.plant, also, on) if not self._is_blocked_alike(case))
+        return (*solved(self.plant, places_asked.values(), on), *more)
+
+    def _is_blocked_alike(self, case: Case) -> bool:
+        """Return whether the same eigenvalues are zeros of the plant in a case, as far as that is known."""
+        if case.result is None:
+            return True
+        own, there = (result.answer["blocked"] for result in (self, case.result))
+        return own is not None and there is not None and [f for f, _ in own] == [f for f, _ in there]
 
     @property
     def _places(self) -> tuple[Place, ...]:
@@ -407,6 +421,29 @@ def _blocked(plant: StateSpace, S: Matrix) -> tuple[tuple[Scalar, Matrix], ...] 
     return tuple(found)
 
 
+#: Of more minors that decide whether an eigenvalue is a zero none is looked at.
+_MINORS = 12
+
+
+def _drops(plant: StateSpace, S: Matrix) -> Iterator[Place]:
+    """Yield strata on which an eigenvalue of S may be a zero of the plant that is none in general, where these are few."""
+    chi, variable = plant.simplified(S.characteristic_polynomial(plant.variable)), plant.variable
+    for found, _ in chi.numerator.factors()[1]:
+        if not found.degree(variable):
+            continue
+        matrix, relations = _pencil(plant, found / found.coefficients(variable)[0])
+        rows, columns = matrix.shape
+        if plant.equations or rows > columns or math.comb(columns, rows) > _MINORS or not matrix.names:
+            continue
+        chosen = itertools.combinations(range(columns), rows)
+        minors = [matrix.select(range(rows), each).determinant().numerator for each in chosen]
+        if relations:  # at all roots of the factor together
+            minors = [resultant(minor, relations[0].numerator, EIGENVALUE) for minor in minors if not minor.is_zero]
+        minors = [minor for minor in minors if not minor.is_zero]
+        if minors and not any(minor.is_constant for minor in minors):
+            yield from places(plant, minors) if len(minors) == 1 else common_places(plant, minors)
+
+
 def _blocking_claims(
     plant: StateSpace, S: Matrix, blocked: tuple[tuple[Scalar, Matrix], ...] | None
 ) -> Iterator[Claim]:
@@ -550,8 +587,8 @@ def _exosystem(page: Builder, design: OutputRegulation) -> None:
     page.set("Q_r", Q)
     if design.estimator is not None and not page.defines("E_d"):
         page.set("E_d", E)
-    page.dynamics("w_e", page["S_w w_e"], silent=True)
-    page.signal("r_w", page["Q_r w_e"], silent=True)
+    page.dynamics("w_e", "S_w w_e", silent=True)
+    page.signal("r_w", "Q_r w_e", silent=True)
     page.equal(
         "w_e' = S_w w_e = #S_w w_e",
         "r_w = Q_r w_e = #Q_r w_e",
@@ -588,7 +625,7 @@ def _impossible(page: Builder, design: OutputRegulation) -> None:
     page.set("V_r", answer["V"])
     page.equal("U_r = #", "V_r = #", say="regulation_obstacle")
     D = page["D"] if plant.matrices.has_feedthrough else plant.matrices.D
-    annuls = page.line("[U_r, V_r] [A, B; C, D] = [S_w U_r, {zero}]", D=D, zero=Matrix.zeros(q, plant.inputs))
+    annuls = page.line("[U_r, V_r] [A, B; C, {D}] = [S_w U_r, {zero}]", D=D, zero=Matrix.zeros(q, plant.inputs))
     disturbed = design.exogenous.disturbs
     found = page.value(design.obstacle if disturbed else -design.obstacle)
     page.conclude("regulation_impossible_E" if disturbed else "regulation_impossible", annuls=annuls, trace=found)
@@ -596,7 +633,7 @@ def _impossible(page: Builder, design: OutputRegulation) -> None:
     if not blocked:
         return
     roots = product_of(factor for factor, _ in blocked)
-    pencil = page("[A - s I, B; C, D]", D=D)
+    pencil = page("[A - s I, B; C, {D}]", D=D)
     of_S = page["det(pencil(S_w))"].scalar
     is_zero = rank(pencil.value, plant.ideal) == n + p
     page.conclude(
@@ -610,14 +647,14 @@ def _impossible(page: Builder, design: OutputRegulation) -> None:
 def _state_law(page: Builder, design: OutputRegulation) -> None:
     """Write u = −K x + F w, and that x − Πw obeys the closed loop."""
     page.define("F_w", "Gamma_w + K Pi_w", say="regulation_gain", answer=True)
-    page.signal("u", page["(-K) x + F_w w_e"], say="regulation_law")
+    page.signal("u", "(-K) x + F_w w_e", say="regulation_law")
     _deviation(page, design)
 
 
 def _deviation(page: Builder, design: OutputRegulation) -> None:
     """Write the equation of x − Πw and the control error, and whether they vanish."""
     through = page.plant.matrices.has_feedthrough
-    page.signal("x_w", page["x - Pi_w w_e"], silent=True)
+    page.signal("x_w", "x - Pi_w w_e", silent=True)
     rate, seen = "(A - B K) x_w", "(C - D K) x_w" if through else "C x_w"
     if design.estimator is not None:
         rate += " + B (K e - F_w e_w)"
@@ -652,7 +689,7 @@ def _observer(page: Builder, design: OutputRegulation, estimator: DisturbanceObs
         return
     write_observer_of_both(page, estimator, page["E_d w_hat"], say="regulation_estimates")
     page.define("F_w", "Gamma_w + K Pi_w", say="regulation_gain", answer=True)
-    page.signal("u", page["(-K) x_hat + F_w w_hat"], say="regulation_law")
+    page.signal("u", "(-K) x_hat + F_w w_hat", say="regulation_law")
     _deviation(page, design)
     zero = Matrix.zeros(design.plant.order + design.exogenous.order, design.plant.order)
     loop = page("[A - B K, [B K, (-B) F_w]; {zero}, A_hat - L C_hat]", zero=zero)

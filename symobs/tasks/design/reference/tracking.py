@@ -16,6 +16,7 @@ from symobs.ground.errors import CertificateRejected, InputError
 from symobs.system.specification import read_gain
 from symobs.tasks.analysis.page_parts import formula_of_factored, in_blocks
 from symobs.tasks.analysis.strata.strata import common_places, places
+from symobs.tasks.design.block_diagrams import draw_tracking
 from symobs.tasks.design.compensator.compensator import observer_based, observer_order
 from symobs.tasks.design.compensator.compensator_page import caution_law
 from symobs.tasks.design.compensator.minimal_order_compensator_page import (
@@ -24,7 +25,6 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
     write_both_gains,
 )
 from symobs.tasks.design.compensator.of_loop import OfLoop
-from symobs.tasks.design.page_parts import draw_tracking
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
 from symobs.tasks.result import Result, choose, holds, method, page_of, poles_of, task
 
@@ -255,7 +255,7 @@ def write_tracking(page: Builder, design: TrackingDesign) -> None:
 def _reference(page: Builder, design: TrackingDesign) -> None:
     """Write ẋ_d = A_d x_d."""
     page.set("A_ref", design.reference)
-    page.dynamics("x_d", page["A_ref x_d"], silent=True)
+    page.dynamics("x_d", "A_ref x_d", silent=True)
     page.equal("x_d' = A_ref x_d", "A_ref = #", say="reference")
 
 
@@ -268,7 +268,7 @@ def _law(page: Builder, design: TrackingDesign) -> None:
     shown = page["K_1 x_1 + K_2 x_2_hat" if minimal else "K x_hat"]
     page.signal("u", page("K x_d - {shown} - K_d x_d", shown=shown), silent=True)
     page.equal(page.line("u = K (x_d - x_hat) - K_d x_d = (K - K_d) x_d - {shown}", shown=shown), say="tracking_law")
-    page.signal("e_d", page["x_d - x"], silent=True)
+    page.signal("e_d", "x_d - x", silent=True)
     through = "B K_2 e_2" if minimal else "B K e"
     error = page.line("e_d = x_d - x")
     page.equal(f"e_d' = (A - B K) e_d + (A_ref - A + B K_d) x_d - {through}", say="tracking_error", error=error)

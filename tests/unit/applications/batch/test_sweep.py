@@ -14,9 +14,9 @@ import pytest
 import symobs
 from symobs.applications.batch.jobs import read_payload
 from symobs.applications.batch.store import work_folder
-from symobs.applications.batch.sweep import table as block
+from symobs.applications.batch.sweep import points as block
+from symobs.applications.batch.sweep.grid import read_grid
 from symobs.applications.batch.sweep.plan import Plan
-from symobs.applications.batch.sweep.table import read_grid
 from symobs.ground.errors import CertificateRejected, InputError, ProblemErrors
 from tests.kit import tabled
 from tests.support.tools.command_line import inside

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import sympy as sp
 
-from symobs.applications.export.grader import claims
-from symobs.applications.export.grader.claims import judge
-from symobs.applications.export.grader.values import ONE, number, points, poly
+from symobs.applications.grader import claims
+from symobs.applications.grader.claims import judge
+from symobs.applications.grader.values import ONE, number, points, poly
 from tests.kit import tabled, tables
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 import sympy as sp
 
-from symobs.applications.export.grader.values import ONE, UnreadableError, number, poly, read
+from symobs.applications.grader.values import ONE, UnreadableError, number, poly, read
 from tests.kit import tabled, tables
 
 S = sp.Symbol("s")

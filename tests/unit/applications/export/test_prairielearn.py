@@ -13,7 +13,7 @@ from xml.etree.ElementTree import fromstring
 import pytest
 
 from symobs.applications.export import export
-from symobs.applications.export.grader.claims import judge
+from symobs.applications.grader.claims import judge
 from tests.kit import tabled
 from tests.support.tools.exported import BY_HAND, HELD, checked, held, random_answer
 

@@ -194,7 +194,7 @@ def test_loci(equations: list[str], signs: dict[str, str], expected: list[str]) 
 
 
 def too_large(*_: Any) -> Any:
-    raise TooLarge
+    raise TooLarge("too large")
 
 
 def test_a_set_of_measurements_is_not_refused_because_of_minors_that_were_not_looked_at(

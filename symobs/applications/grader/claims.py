@@ -10,7 +10,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.export.grader.values import (
+from symobs.applications.grader.values import (
     DECIMAL,
     ONE,
     TYPED,
