@@ -376,7 +376,7 @@ def gramian(
     plant: _Plant,
     *,
     horizon: _Number | None = None,
-    of: str = "observability",
+    of: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _GramianResult:
@@ -737,7 +737,7 @@ class _PbhResult(_PopovBelevitchHautus):
 def pbh(
     plant: _Plant,
     *,
-    of: str = "observability",
+    of: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _PbhResult:
