@@ -50,13 +50,13 @@ def test_every_line_on_the_left_has_its_dual_on_the_right() -> None:
     assert [len(cell) for cell in left] == [len(cell) for cell in right]
     assert all(cell for row in columns().rows for cell in row)
     assert [left[0][0], right[0][0]] == [
-        "O.T = [C.T, A.T*C.T] = [1 0; 0 1]",
-        "Ctr = [B, A*B] = [0 1; 1 0]",
+        "O.T = [C.T, A.T*C.T] = [1, 0; 0, 1]",
+        "Ctr = [B, A*B] = [0, 1; 1, 0]",
     ]
     assert [asked.endswith("= s**2 + s*mu1 + s*mu2 + mu1*mu2") for (asked,) in (left[-3], right[-3])] == [True, True]
     (gain,), (feedback,) = left[-2], right[-2]
-    assert gain.endswith("= [-mu1-mu2 -mu1*mu2]")
-    assert feedback.endswith("= [-mu1*mu2 -mu1-mu2]")
+    assert gain.endswith("= [-mu1 - mu2, -mu1*mu2]")
+    assert feedback.endswith("= [-mu1*mu2, -mu1 - mu2]")
 
 
 def test_sources_are_numbered_as_they_are_read() -> None:
