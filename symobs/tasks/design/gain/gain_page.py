@@ -13,7 +13,8 @@ from symobs.formula.tree.written import stacked
 from symobs.proof.derivation import CaseStep
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.proof.derivation.facts import PREDICATES
-from symobs.proof.derivation.wording_check import Said, rests
+from symobs.proof.derivation.sentence_context import SentenceContext
+from symobs.proof.derivation.wording_check import meets_obligations
 from symobs.stability.criteria.stability import stability
 from symobs.system.specification import DesiredPolynomial
 from symobs.tasks.analysis.page_parts import (
@@ -151,7 +152,7 @@ def _test(page: Builder, design: GainDesign, side: PlacementProblem, style: str)
         define_test_matrix(page, side)
         is_known = square_test(page, side.matrix, design.test, side.test)
     else:
-        is_known = rests(f"assignable_{side.kind}", Said((), page.environment))
+        is_known = meets_obligations(f"assignable_{side.kind}", SentenceContext((), page.environment))
     if is_known and design.fixed_polynomial.is_one and design.answer[side.gain] is not None:
         page.conclude(f"assignable_{side.kind}")
 
