@@ -22,8 +22,8 @@ from symobs.tasks.analysis.page_parts import (
     factored_form,
     formula_of_factored,
     hidden_polynomial,
+    redefined_letters,
     say_stability,
-    set_anew,
     stratum_of,
     undecided,
 )
@@ -310,7 +310,7 @@ def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[
             write_case(page, inner, side, (*around, case))
     finally:
         steps, page.steps, page.environment = page.steps, outer, environment
-    anew = set_anew(here, inside)
+    anew = redefined_letters(here, inside)
     page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=anew))
 
 
@@ -334,7 +334,7 @@ def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side
     )
     steps = outside_cases(page, result, page.steps) or [undecided(page, cases[-1])]
     if steps != page.steps:  # a gain that is defined there is none of the further cases
-        anew = set_anew(before, page.environment)
+        anew = redefined_letters(before, page.environment)
         page.environment = before
         steps = [replace(step, anew=anew) if isinstance(step, CaseStep) else step for step in steps]
     page.steps = steps
