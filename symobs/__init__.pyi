@@ -19,6 +19,7 @@ from symobs.ground.errors import DerivationRejected as DerivationRejected
 from symobs.ground.errors import ExpressionError as ExpressionError
 from symobs.ground.errors import InexactInput as InexactInput
 from symobs.ground.errors import InputError as InputError
+from symobs.ground.errors import OpenEquality as OpenEquality
 from symobs.ground.errors import OutOfBudget as OutOfBudget
 from symobs.ground.errors import ProblemErrors as ProblemErrors
 from symobs.ground.errors import ShapeMismatch as ShapeMismatch
@@ -138,6 +139,8 @@ class _CompensatorResult(_OutputFeedback):
     def F_stable(self) -> str: ...
     @property
     def F_stable_if(self) -> tuple[str, ...]: ...
+    @property
+    def F_cancels_where(self) -> tuple[Any, ...]: ...
     @property
     def compensator_stable(self) -> str: ...
     @property
@@ -373,7 +376,7 @@ def gramian(
     plant: _Plant,
     *,
     horizon: _Number | None = None,
-    of: str = "observability",
+    of: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _GramianResult:
@@ -467,6 +470,12 @@ class _KalmanResult(_OptimalFilter):
     @property
     def poles(self) -> tuple[Any, ...]: ...
     @property
+    def A(self) -> ImmutableMatrix: ...
+    @property
+    def B_u(self) -> Any: ...
+    @property
+    def B_y(self) -> ImmutableMatrix: ...
+    @property
     def modes(self) -> tuple[Any, ...]: ...
 
 def kalman(
@@ -475,6 +484,7 @@ def kalman(
     W: _Number | _Matrix | None = None,
     V: _Number | _Matrix | None = None,
     G: _Matrix | None = None,
+    N: _Matrix | None = None,
     method: str = "auto",
     floats: str | None = None,
 ) -> _KalmanResult:
@@ -491,6 +501,8 @@ class _LqrResult(_OptimalFeedback):
     def polynomial(self) -> Expr: ...
     @property
     def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def closed_loop_matrix(self) -> ImmutableMatrix: ...
     @property
     def modes(self) -> tuple[Any, ...]: ...
 
@@ -725,7 +737,7 @@ class _PbhResult(_PopovBelevitchHautus):
 def pbh(
     plant: _Plant,
     *,
-    of: str = "observability",
+    of: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _PbhResult:

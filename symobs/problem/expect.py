@@ -368,10 +368,10 @@ def _held_against(result: Answered, expected: Mapping[str, tuple[Any, str]], err
                 lines.append(
                     f"{where}: expected {shown(shown_value(entry), _MOST_SHOWN)}, found {shown(found, _MOST_SHOWN)}"
                 )
-        except SymobsError as error:
-            errors.append(error)
         except TooLarge as error:
             errors.append(OpenEquality(str(error), where=where, repair="write it by the functions of the answer"))
+        except SymobsError as error:
+            errors.append(error)
     return lines
 
 

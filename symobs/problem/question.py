@@ -61,6 +61,7 @@ _WEIGHTS = {
     ("lqr", "R"): ("R_u", "inputs"),
     ("lqr", "N"): ("N_x", ""),
     ("kalman", "G"): ("G_n", ""),
+    ("kalman", "N"): ("N_n", ""),
     ("kalman", "W"): ("W_n", "order"),
     ("kalman", "V"): ("V_n", "outputs"),
     ("lyapunov", "Q"): ("Q_l", "order"),
@@ -249,6 +250,12 @@ def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
     """Yield what the specification contains for a task, read."""
     specification = problem.specification_of(task)
     keys = keys_of(task, specification)
+    if (
+        task.name in {"pbh", "gramian"}
+        and "of" not in keys
+        and problem.plant.pair_asked_for("auto") == "controllability"
+    ):
+        yield "of", "controllability"
     for name, kind in task.keywords.items():
         if name in keys and is_pattern(specification[keys[name]]):
             yield name.replace("poles", "polynomial"), _read_pattern(problem, task, name, keys[name])

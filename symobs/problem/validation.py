@@ -9,11 +9,12 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from symobs.formula.convention import STANDARD, Convention, convention_named
-from symobs.formula.expression import comma_between_digits, declared_name, parse_polynomial
+from symobs.formula.expression import comma_between_digits, declared_name, parse_polynomial, without_comma
+from symobs.formula.expression.names import NAME
 from symobs.formula.expression.source import shown
 from symobs.formula.phrases.languages import ENGLISH, language_named
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import ProblemErrors, Undecided, UsageError
+from symobs.ground.errors import InputError, ProblemErrors, SymobsError, Undecided, UnknownName, UsageError
 from symobs.problem.expect import unreadable
 from symobs.problem.fields import FLAG, TEXT, Marking, list_of, read_marking
 from symobs.problem.file_tables import Decimal, Errors, came, check_text, report_unknown, table_of, with_constants
@@ -31,7 +32,7 @@ from symobs.problem.schema import (
 )
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.reading import read_time
-from symobs.system.specification import is_pattern, parse_signal, read_poles
+from symobs.system.specification import from_list, is_pattern, parse_signal, read_poles
 from symobs.system.specification.pole_patterns import OTHERS, named_parts, require_positive
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.result import Document, Result, Task, methods, result_type, task_named, tasks
@@ -185,7 +186,40 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
         _read_alone(specification, _kinds(wanted), expect, symbols, read_time(dt, symbols).variable, errors)
         for missing in missing_poles(wanted, data.get("specification")):
             errors.note(*missing)
+    errors.found = _without_consequences(errors.found, data)
     raise errors.together(convention)
+
+
+def _without_consequences(found: Sequence[SymobsError], data: Mapping[str, Any]) -> list[SymobsError]:
+    """Return errors without those of names that a faulty declaration was to declare: they are mended with it."""
+    meant, refused = _meant_to_be_declared(data)
+
+    def follows(error: SymobsError) -> bool:
+        is_unknown = isinstance(error, UnknownName) and error.facts.get("name") in meant
+        is_told = not error.where.startswith("symbols") and any(
+            error.message.startswith(f'"{name}" ') for name in refused
+        )
+        return is_unknown or is_told
+
+    return [error for error in found if not follows(error)]
+
+
+def _meant_to_be_declared(data: Mapping[str, Any]) -> tuple[set[str], list[str]]:
+    """Return the names in declarations that are no table, no name, a list or elsewhere, and the keys that are no names."""
+    table = data.get("symbols", {})
+    plant = data.get("plant")
+    elsewhere = [data.get("symbol"), plant.get("symbols") if isinstance(plant, Mapping) else None]
+    texts = [str(other) for other in elsewhere if other is not None]
+    refused: list[str] = []
+    if not isinstance(table, Mapping):
+        return {*NAME.findall(" ".join([*texts, str(table)]))}, []
+    for name, entry in list(table.items())[:_MAX_SYMBOLS]:
+        try:
+            declared_name(name)
+        except InputError:
+            refused.append(name)
+        texts += [str(entry)] if isinstance(entry, list) else []
+    return {*NAME.findall(" ".join([*texts, *refused]))}, refused
 
 
 #: Keywords that say which gain a task has, by its letter.
@@ -387,8 +421,7 @@ def _require_clear_commas(specification: Mapping[str, Any], kinds: Mapping[str, 
     """Note poles with a comma between digits in a file whose language has decimal commas: 1,5 is a number there, too."""
     for name in [name for name in specification if kinds[name] == "Poles"]:
         if (comma := comma_between_digits(specification[name])) and ";" not in specification[name]:
-            point = comma.replace(",", ".")
-            repair = f"write {point} with a decimal point, or a space behind a comma between two poles"
+            repair = f"write {without_comma(comma)}, or a space behind a comma between two poles"
             errors.note(f"{comma} may be one number or two", f"specification.{name}", repair)
 
 
@@ -431,7 +464,7 @@ def _read_alone(
                     read_poles(value, symbols, where)
                 case "GainText" | "MatrixText":
                     read_cells(value, symbols, where, others)
-                    read_matrix(value, symbols, where)
+                    read_matrix(from_list(value, column=True), symbols, where)
                 case "SignalText" | "TimeFunctions" as kind:
                     parse_signal(value, symbols, where, functions=kind == "TimeFunctions")
     others.found += unreadable(expect, symbols.names, variable)

@@ -529,6 +529,11 @@ class StateSpace:
         """Return what makes the plant; what was found on its strata is no part of that."""
         return {name: value for name, value in vars(self).items() if name != "findings"}
 
+    def pair_asked_for(self, of: str) -> str:
+        """Return observability or controllability where `of` leaves it to the data: of (A, B) without C it is the latter."""
+        by_input = self.matrices.has_input and not self.matrices.has_output
+        return of if of != "auto" else "controllability" if by_input else "observability"
+
     def require(self, *names: str, task: str) -> None:
         """Raise `InputError` unless the matrices of a task are given."""
         missing = [n for n in names if (n == "B" and not self.inputs) or (n == "C" and not self.outputs)]

@@ -1,6 +1,6 @@
 """Every task through the doors of a problem file: python -m tests.programs.doors --problems 20000.
 
-Random small plants with letters; for each the answer, its page in four formats and two languages, its JSON and its question
+Random small plants with letters; for each the answer, its page in two formats and languages, its JSON and its question
 are asked.  Counted are crashes, pages without a verdict, and what takes longer than a limit and is not undecided.
 """
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
 #: Formats of a page, each with its language.
-PAGES = (("text", "en"), ("text", "de"), ("html", "en"), ("beamer", "en"), ("latex", "de"))
+PAGES = (("text", "en"), ("html", "de"))
 #: What a page of a test of rank says of the pair, beside the sentence "if and only if".
 _VERDICT = re.compile(
     r"(is|are) (not )?(observable|controllable|detectable|stabilizable)|^\s*In this case|not decided here", re.MULTILINE

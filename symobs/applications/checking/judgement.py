@@ -30,7 +30,7 @@ from symobs.applications.checking.rounded import entries_are_right, in_enough_di
 from symobs.exact import Complex, Matrix, Root, Scalar, TooLarge, kernel
 from symobs.exact.core.generators import functions_in
 from symobs.exact.linear_algebra.transfer_function import pole_and_zero_polynomial
-from symobs.formula.expression import parse_matrix
+from symobs.formula.expression import parse_matrix, without_comma
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, NotShown, ProblemErrors, SymobsError, UnknownName
@@ -485,7 +485,7 @@ def _unreadable(part: Judged, error: SymobsError) -> Judged:
     """Return the part as one that cannot be read, with the place and the repair."""
     errors = error.errors if isinstance(error, ProblemErrors) else (error,)
     comma = decimal_comma(part.given)
-    repair = f"write {comma.replace(',', '.')} with a decimal point" if comma else _repair(errors[0])
+    repair = f"write {without_comma(comma)}" if comma else _repair(errors[0])
     said = "; ".join(filter(None, (*(each.message for each in errors[:_MOST_SAID]), repair)))
     return replace(part, verdict="unreadable", reason=str(SymobsError(said)))
 
@@ -529,9 +529,14 @@ def _gain(task: _Task, part: Judged) -> Judged:
     task.gains[name] = value
     try:
         other = task.right if known == EQUAL else task.right.with_gains({name: value})
+    except UNDECIDED as error:
+        return replace(part, verdict="undecided", reason=str(error))
     except CertificateRejected as rejected:
-        if task.marking.decimals == "accept" and _is_rounded(task, part, value):
-            return replace(part, verdict="right", hints=("rounded",))
+        try:
+            if task.marking.decimals == "accept" and _is_rounded(task, part, value):
+                return replace(part, verdict="right", hints=("rounded",))
+        except UNDECIDED as error:
+            known, why = OPEN, str(error)
         if known == OPEN:
             return replace(part, verdict="undecided", reason=why)
         if task.is_half:
@@ -541,8 +546,6 @@ def _gain(task: _Task, part: Judged) -> Judged:
         task.wrong = (*task.wrong, name)
         claim = rejected.facts.get("claim")
         return replace(part, claims=((str(claim), False, "exact"),) if claim else ())
-    except UNDECIDED as error:
-        return replace(part, verdict="undecided", reason=str(error))
     before = {condition.expression for condition in task.right.holds_where}
     new = [c.expression for c in other.holds_where if c.expression not in before]
     hints = (f"not defined where {' or '.join(f'{value} = 0' for value in new)}",) if new else ()
@@ -566,6 +569,8 @@ def rounds(
     turned = right is not None and view.standard(part.letter)[1] < 0
     try:
         return entries_are_right(view, part.letter, part.given, -right if turned else right, names, digits)  # type: ignore[operator]
+    except UNDECIDED:
+        raise
     except SymobsError:
         return False
 
@@ -714,6 +719,8 @@ def _holds(task: _Task, result: Result, part: Judged) -> tuple[str, ...] | None:
         matrix, known, why = in_form_of(matrix, own, task.signs)
         try:
             found = result if known == EQUAL else result.with_answer(part.name, matrix)
+        except UNDECIDED:
+            raise
         except CertificateRejected:
             if known == OPEN:
                 raise TooLarge(why) from None
@@ -782,8 +789,11 @@ def _in_coordinates(task: _Task, given: Sequence[Judged]) -> dict[str, Judged]:
         here = {name for name, part in readable.items() if _is_met(task, result, part, exact(part.given))}
         if len(here) > len(held):
             held, there, hints = here, result, (remark,) if remark else ()
+    undecided = {name for name, part in readable.items() if name not in held and _is_open(task, there, part)}
     for name, part in readable.items():
-        if name in held:
+        if name in undecided:
+            parts[name] = replace(part, verdict="undecided", reason="whether it is the right value is not decided")
+        elif name in held:
             parts[name] = replace(part, verdict="right", hints=hints)
         elif task.own is not None and _is_met(task, task.own, part, exact(part.given)):
             parts[name] = replace(part, verdict="follows", origins=task.wrong)
@@ -796,8 +806,19 @@ def _in_coordinates(task: _Task, given: Sequence[Judged]) -> dict[str, Judged]:
 def _is_met(task: _Task, result: Result, part: Judged, given: Any) -> bool:
     try:
         return exists(result, part.name) and _met(task, result, part, given)
+    except (InputError, *UNDECIDED):
+        return False
+
+
+def _is_open(task: _Task, result: Result, part: Judged) -> bool:
+    """Return whether it is not decided if a value is that of a result."""
+    try:
+        _ = exists(result, part.name) and _met(task, result, part, exact(part.given))
+    except UNDECIDED:
+        return True
     except InputError:
         return False
+    return False
 
 
 # -- regions ----------------------------------------------------------------------------------------------------------

@@ -26,7 +26,12 @@ _SECONDS, _MEGABYTES = 600.0, 2000.0
 @click.command("sweep")
 @click.argument("problem")
 @click.option(
-    "--over", required=True, metavar="GRID", help="l=0.1:0.1:10, m=[1,2,5], k=0:1/11 (11 points), g=decade(1e-3:1e3)"
+    "--over",
+    "several",
+    required=True,
+    multiple=True,
+    metavar="GRID",
+    help="l=0.1:0.1:10, m=[1,2,5], k=0:1/11 (11 points), g=decade(1e-3:1e3)",
 )
 @click.option("--out", metavar="PATH", help="The table: .csv, .parquet, or a folder of Parquet files.")
 @click.option("--plot", metavar="PATH", help="A picture of the columns: .svg, .png, .pdf or .tex.")
@@ -40,7 +45,7 @@ _SECONDS, _MEGABYTES = 600.0, 2000.0
 @of_a_run
 def command(
     problem: str,
-    over: str,
+    several: tuple[str, ...],
     out: str | None,
     plot: str | None,
     columns: str | None,
@@ -58,6 +63,7 @@ def command(
     was ended: it goes on.  The picture shows columns over one name, or lines of equal values of one column over two.
     """
     errors = Errors()
+    over = ", ".join(several)
     with errors:
         if out is None and plot is None:
             repair = "write --out table.csv or --out table.parquet, or --plot picture.svg"

@@ -91,7 +91,27 @@ def binary(stream: Any) -> Any:
     """Return the binary stream of a standard stream, which is None if it was closed."""
     if stream is None:
         raise OSError(errno.EBADF, os.strerror(errno.EBADF))
-    return stream.buffer
+    return stream.buffer if hasattr(stream, "buffer") else _Text(stream)
+
+
+class _Text:
+    """The binary stream of one that has text alone, such as an `io.StringIO` in place of standard output."""
+
+    def __init__(self, stream: Any) -> None:
+        self.stream = stream
+
+    def write(self, content: bytes) -> int:
+        """Write bytes of UTF-8."""
+        self.stream.write(bytes(content).decode(errors="replace"))
+        return len(content)
+
+    def flush(self) -> None:
+        """Flush the text."""
+        self.stream.flush()
+
+    def read(self, size: int = -1) -> bytes:
+        """Return text as bytes of UTF-8."""
+        return str(self.stream.read(size)).encode()
 
 
 # -- streams ----------------------------------------------------------------------------------------------------------

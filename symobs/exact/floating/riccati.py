@@ -6,7 +6,7 @@ What is found is an `Enclosure`, which `riccati_check` proves; the precision is 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from flint import arb, arb_mat
 
@@ -64,6 +64,20 @@ def enclosed_solution(regulator: Regulator, digits: int = _DIGITS) -> Enclosure 
         if found is not None:
             return found
     return None
+
+
+def digits_after_measurement(found: Enclosure, C: Matrix, V: Matrix, digits: int = _DIGITS) -> tuple[Any, Any] | None:
+    """Return the digits of P Cᵀ(C P Cᵀ + V)⁻¹ and of P − P Cᵀ(C P Cᵀ + V)⁻¹ C P; None where they are not certain."""
+    with Precision(found.bits):
+        middle, radius = balls(found.centre), arb(0, number(found.radius).upper())
+        size = middle.nrows()
+        P = arb_mat([[middle[i, j] + radius for j in range(size)] for i in range(size)])
+        c, v = balls(C), balls(V)
+        try:
+            gain_after = (c * P * c.transpose() + v).solve(c * P).transpose()
+            return _written(gain_after, digits), _written(P - gain_after * c * P, digits)
+        except (Uncertain, ZeroDivisionError):
+            return None
 
 
 def _found(regulator: Regulator, bits: int, digits: int) -> Enclosure | None:

@@ -7,6 +7,7 @@ from symobs.formula.expression.parse import (
     parse_poles,
     parse_polynomial,
     parse_scalar,
+    without_comma,
 )
 
 __all__ = [
@@ -16,4 +17,5 @@ __all__ = [
     "parse_poles",
     "parse_polynomial",
     "parse_scalar",
+    "without_comma",
 ]

@@ -55,10 +55,12 @@ def refusal(name: str) -> tuple[str, str] | None:
     """Return why a well-formed name is reserved, and the repair."""
     if len(name) > LONGEST_NAME:
         return f'the name "{shown(name)}" has more than {LONGEST_NAME} characters', "shorten it"
+    if name in {"and", "or"}:
+        return f'"{name}" stands between values', "set them apart by commas"
     if keyword.iskeyword(name):
         another = f"{name}_" if keyword.iskeyword(name[:3]) else name[:3]
         return f'"{name}" is a word of Python and names no symbol', f'write another name, such as "{another}"'
-    if name in {"oo", "inf", "nan"}:
+    if name in {"oo", "inf", "infinity", "nan"}:
         return f'"{name}" is reserved: it is not a finite number', "write a finite exact value"
     if name in RESERVED or name in FUNCTIONS:
         return f'"{name}" is reserved and names no symbol', "write another name"

@@ -38,6 +38,7 @@ __all__ = [
     "parse_poles",
     "parse_polynomial",
     "parse_scalar",
+    "without_comma",
 ]
 
 #: Rows in brackets of their own, as NumPy, SymPy and JSON print a matrix; [[1]; [2]] is a matrix of blocks.
@@ -156,6 +157,17 @@ def comma_between_digits(value: object) -> str:
     return found[0] if found else ""
 
 
+def without_comma(comma: str) -> str:
+    """Return what to write in place of a number with a comma: 1.5; of 1,500, which may be thousands, both readings."""
+    point = f"{comma.replace(',', '.')} with a decimal point"
+    whole, _, behind = comma.partition(",")
+    is_of_thousands = len(behind) == _THOUSANDS and whole != "0" and len(whole) <= _THOUSANDS
+    return f"{point}, or {whole}{behind} if the comma sets thousands apart" if is_of_thousands else point
+
+
+_THOUSANDS = 3
+
+
 def _with_commas(text: str, where: str) -> str:
     """Return a text of numbers with commas in place of the semicolons between them."""
     if ";" not in text or "[" in text:
@@ -163,7 +175,7 @@ def _with_commas(text: str, where: str) -> str:
     comma = comma_between_digits(text)
     if comma:
         message = f'"{comma}" has a comma between its digits, and semicolons set the numbers apart'
-        raise InputError(message, where=where, repair=f"write {comma.replace(',', '.')} with a decimal point")
+        raise InputError(message, where=where, repair=f"write {without_comma(comma)}")
     return text.replace(";", ",")
 
 
@@ -201,7 +213,9 @@ def _entry(value: object, scope: Scope, where: str) -> Number:
     entries = read(value, scope, where)
     if len(entries) > 1:
         message = f'one expression is expected, but "{shown(value)}" holds {len(entries)}, set apart by commas'
-        raise ExpressionError(message, where=where, repair="write a decimal number with a point")
+        comma = comma_between_digits(value)
+        repair = f"write {without_comma(comma)}" if comma else "write a decimal number with a point"
+        raise ExpressionError(message, where=where, repair=repair)
     return _single(entries[0], where)
 
 
@@ -302,7 +316,14 @@ def _refuse_blanks_for_commas(text: str, where: str) -> None:
     raise ExpressionError(f'"{shown(text)}" may be several numbers or one sum', where=where, repair=repair)
 
 
+#: The sign of a transpose behind the bracket of a matrix; ^T is one unless T is declared.
+_TRANSPOSED = re.compile(r"(\[.*\])\s*(?:'|ᵀ|\^\s*(?:T|\{T\}|\(T\)))\s*", re.DOTALL)
+
+
 def _rows_of_text(text: str, scope: Scope, where: str) -> Sequence[Sequence[Number]]:
+    turned = _TRANSPOSED.fullmatch(text) if len(text) <= MOST_CHARACTERS else None
+    if turned and not ("T" in text[turned.end(1) :] and scope.declares("T")):
+        return [*zip(*_rows_of_text(turned[1], scope, where), strict=True)]
     if len(text) <= MOST_CHARACTERS and (rows := ROWS.fullmatch(text.strip())):
         text = f"[{'; '.join(row.strip() for row in ROW.findall(rows[1]))}]"
     try:
@@ -313,6 +334,8 @@ def _rows_of_text(text: str, scope: Scope, where: str) -> Sequence[Sequence[Numb
         raise
     if len(entries) > 1:
         repair = "write the rows in one pair of brackets: [1 0; 0 1]"
+        if all(not isinstance(entry, MatrixRows) for entry in entries):
+            repair = f"write [{shown(text)}] for a row, [{shown(text.replace(',', ';'))}] for a column"
         raise ExpressionError(f'"{shown(text)}" is not one matrix', where=where, repair=repair)
     return entries[0].rows if isinstance(entries[0], MatrixRows) else [[entries[0]]]
 

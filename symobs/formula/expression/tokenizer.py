@@ -268,11 +268,24 @@ class Tokeniser:
     # -- brackets -------------------------------------------------------------------------------------------------
 
     def _open(self, text: str, at: int) -> None:
+        if text == "[" and self.tokens and self.text[at - 1 : at].strip() and self._is_indexed(at):
+            message = "what stands in brackets directly behind a value is an index"
+            name = self.tokens[-2 if self.tokens[-1].start == at else -1]
+            instead = f"write {name}_1 or another name of its own; of a product {name}*( )"
+            repair = "write the entry itself" if name == "]" else instead
+            raise self.source.error(message, at, repair)
         if len(self.open) >= MOST_NESTING:
             message, repair = f"brackets are nested deeper than {MOST_NESTING}", "write it with fewer brackets"
             raise self.source.error(message, at, repair, kind=BudgetExceeded)
         self.open.append(self._add("LEFT" if text == "[" else "_OPEN", text, at))
         self.commas.append(self._has_commas(at + 1))
+
+    def _is_indexed(self, at: int) -> bool:
+        """Return whether the last token is a matrix, or a letter with an implied product behind it."""
+        last = self.tokens[-1]
+        if last.type == "MULTIPLY" and last.start == at and len(self.tokens) > 1:
+            last = self.tokens[-2]
+        return last.type == "_RIGHT" or (last.type == "VALUE" and last[:1].isalpha())
 
     def _close(self, text: str, at: int) -> None:
         if not self.open:

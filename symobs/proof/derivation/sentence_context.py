@@ -40,8 +40,6 @@ if TYPE_CHECKING:
 
 
 _Slots: TypeAlias = "Mapping[str, Formula | Fact | Counted | StateChoice | str]"
-
-
 #: The name under which it is remembered that stability is meant in the sense of Lyapunov from here on.
 WEAKER = "stable in the sense of Lyapunov"
 

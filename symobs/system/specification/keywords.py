@@ -17,13 +17,21 @@ from symobs.exact import Complex, Field, Matrix, Scalar, modulo, product_of
 from symobs.exact.algebraic.rounded_decimals import conjugates, is_in_kernel, product_of_linear, tidied
 from symobs.exact.core.generators import (
     NotWritten,
+    all_roots,
     functions_in,
     identities,
     roots_in,
     square_root,
     symbols_in,
 )
-from symobs.formula.expression import comma_between_digits, declared_name, parse_matrix, parse_poles, parse_polynomial
+from symobs.formula.expression import (
+    comma_between_digits,
+    declared_name,
+    parse_matrix,
+    parse_poles,
+    parse_polynomial,
+    without_comma,
+)
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.system import Matrices, StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
@@ -201,7 +209,7 @@ def desired_polynomial(
     elif poles is not None:
         read = read_poles(poles, plant.symbols, first, plant.variable, letters=plant.field.names)
         if len(read) != degree:
-            raise _miscounted(poles, len(read), degree, first)
+            raise _miscounted(poles, read, degree, first)
         found = _from_poles(read, plant.variable, first)
     else:
         found = _from_polynomial(polynomial, plant, degree, second)
@@ -240,13 +248,25 @@ def read_poles(
     )
 
 
-def _miscounted(poles: object, count: int, degree: int, where: str) -> InputError:
-    """Return the error of too many poles or too few; a comma between digits may have been meant as that of a decimal."""
+def _miscounted(poles: object, read: Sequence[Complex], degree: int, where: str) -> InputError:
+    """Return the error of too many poles or too few; a comma between digits may have been meant as that of a decimal.
+
+    Where the conjugates of those that are given make up the number, they are what is missing.
+    """
+    count = len(read)
+    partners = {pole: Complex(pole.real, -pole.imaginary) for pole in read if not pole.is_real}
+    missing = [(pole, partner) for pole, partner in partners.items() if partner not in read]
+    if missing and count + len(missing) == degree:
+        listed = " and ".join(f"{partner} beside {pole}" for pole, partner in missing)
+        message = f"the poles are not closed under conjugation: {listed} {'is' if len(missing) == 1 else 'are'} missing"
+        add = ", ".join(str(partner) for _, partner in missing)
+        return InputError(message, where=where, repair=f"add {add}", given=count)
     message = f"{count} pole{'s' if count != 1 else ''} given, {degree} needed"
     repair = f"give as many poles as the order asks for, {degree}, with commas between"
     comma = comma_between_digits(poles)
     if comma:
-        repair += f"; if one of them is {comma.replace(',', '.')}, write it with a decimal point"
+        point, _, thousands = without_comma(comma).partition(" with a decimal point")
+        repair += f"; if one of them is {point}, write it with a decimal point{thousands}"
     return InputError(message, where=where, repair=repair, given=count)
 
 
@@ -300,6 +320,11 @@ def _not_closed(waiting: Sequence[Complex], where: str) -> InputError:
     """Return the error for poles, of which those of the first one are not all there, or make no polynomial of the data."""
     pole = waiting[0]
     partner = next((other for other in conjugates(pole, of_numbers=False) if other not in waiting), None)
+    roots = sorted({root.text for part in (pole.real, pole.imaginary) for root in all_roots(part) if root.symbols})
+    if partner is not None and pole.is_real and roots:  # both are real: what is missing is no conjugate
+        message = f"the polynomial of the poles has {roots[0]} in its coefficients, which is no number of the data"
+        repair = f'declare a symbol for it, w = "positive", and write w for {roots[0]} in the poles and its square in the data'
+        return InputError(message, where=where, repair=repair)
     if partner is not None:
         message = f"the poles are not closed under conjugation: {partner} is missing beside {pole}"
         return InputError(message, where=where, repair=f"replace one of the poles by {partner}")
@@ -362,10 +387,16 @@ def _monic_factors(polynomial: Scalar, variable: str) -> tuple[Scalar, ...]:
     return tuple(sorted(factors, key=lambda f: f.degree(variable)))
 
 
+#: A vector in parentheses: (1, 0).
+_VECTOR = re.compile(r"\s*\(([^()]*)\)\s*")
+
+
 def from_list(value: Any, *, column: bool) -> Any:
     """Return a flat list, or the text of one, as a column or a row, anything else as it is."""
     if isinstance(value, str) and "[" not in value and "," in value:
-        return f"[{value.replace(',', ';') if column else value}]"
+        entries = _VECTOR.fullmatch(value)
+        inside = entries[1] if entries else value
+        return f"[{inside.replace(',', ';') if column else inside}]"
     return as_rows("B" if column else "C", value)
 
 

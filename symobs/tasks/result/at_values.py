@@ -42,7 +42,7 @@ _T = TypeVar("_T")
 #: The keywords for which a flat list is a row; it is a column for the others.
 _ROWS = {"K", "reference"}
 #: What a task takes where a keyword of some kind is not given.
-_UNSAID = {"Horizon": "T"}
+_UNSAID = {"Horizon": Scalar.symbol("T")}
 
 
 def at_values(result: Any, given: Mapping[Any, Any]) -> Any:
@@ -54,8 +54,10 @@ def at_values(result: Any, given: Mapping[Any, Any]) -> Any:
     read = {
         name: _READERS[kind](asked, plant, f"specification.{name}")
         for name, kind in task.kinds.items()
-        if kind in _READERS and (asked := result.specification.get(name, _UNSAID.get(kind))) is not None
+        if kind in _READERS and (asked := result.specification.get(name)) is not None
     }
+    unsaid = {name: _UNSAID[kind] for name, kind in task.kinds.items() if kind in _UNSAID and not plant.is_discrete}
+    read = {**unsaid, **read}
     values = _values(given, plant, {name for value in read.values() for name in _names(value)})
     if not values:
         return result

@@ -183,7 +183,8 @@ class OutputMethods:
     @property
     def numbers(self) -> Mapping[str, Any]:
         """The fields as programs use them: certain digits, as rational numbers, stand for what has no closed form."""
-        return self.fields
+        found: Mapping[str, Any] = self.fields
+        return found
 
     @property
     def scope(self) -> dict[str, str]:

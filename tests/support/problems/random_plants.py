@@ -44,7 +44,7 @@ def small_problem(name: str, chance: random.Random) -> dict[str, Any]:
     """
     small = tables(Path(__file__))["small"]
     pool = chance.sample(small[chance.choice(["letters", "letters", "equal"])], 3)
-    n, m, p = chance.choice([1, 2, 2, 2, 3]), chance.choice([1, 1, 1, 2]), chance.choice([1, 1, 1, 2])
+    n, m, p = chance.choice([1, 1, 2, 2, 2, 2, 2, 3]), chance.choice([1, 1, 1, 2]), chance.choice([1, 1, 1, 2])
 
     def matrix(rows: int, columns: int, zeros: float = 0.4) -> list[list[str]]:
         entries = [

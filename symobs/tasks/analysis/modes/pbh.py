@@ -151,16 +151,18 @@ def pbh_eigenvalues(plant: StateSpace, of: str) -> PopovBelevitchHautus:
 
 
 @task
-def pbh(plant: StateSpace, *, of: Name = "observability", method: Name = "auto") -> Result:
+def pbh(plant: StateSpace, *, of: Name = "auto", method: Name = "auto") -> Result:
     """Test observability (or controllability) eigenvalue by eigenvalue: rank [A − λI; C] = n for all λ.
 
-    plant    n states; p ≥ 1 outputs for `of` = "observability", m ≥ 1 inputs for "controllability"
+    plant    n states; p ≥ 1 outputs for `of` = "observability", m ≥ 1 inputs for "controllability"; without `of` it is
+             observability, or controllability of a plant with B and without C
     Returns modes (list of eigenvalue, stable, observable or controllable, rank, matrix, with multiplicity),
     fixed_polynomial, polynomial.  Eigenvalues without closed form are handled through their irreducible factor.
     Raises `InputError` where a matrix is missing or `of` is another name.
 
     Source: M. L. J. Hautus (1969); T. Kailath, Linear Systems, ch. 2.
     """
+    of = plant.pair_asked_for(of)
     if of not in TESTS:
         message = f"{str(of)[:40]!r} is not what the test can be asked of"
         raise InputError(message, where="specification.of", repair=f"write one of {', '.join(TESTS)}")

@@ -30,7 +30,6 @@ from symobs.tasks.analysis.page_parts import factored_form, given, is_narrow
 from symobs.tasks.analysis.rank.rank_test import power_rows
 from symobs.tasks.analysis.realization.canonical_form import basis
 from symobs.tasks.analysis.realization.canonical_form import transfer_matrix as reduced
-from symobs.tasks.analysis.strata.loci import distance_from
 from symobs.tasks.result import Case, Result, choose, holds, method, task
 
 if TYPE_CHECKING:
@@ -112,10 +111,10 @@ class TransferFunction(Result):
         alone = (*own, *(Condition("existence", f) for f in self._factors if f in changing))
         known = {condition.expression for condition in alone}
         together = (_vanishing(case) for case in self.case_tree if case.when and not known & _vanishing(case))
-        distances = dict.fromkeys(
-            distance_from(tuple(sorted(equations, key=str))) for equations in together if equations
-        )
-        return (*alone, *(Condition("existence", distance) for distance in distances))
+        from symobs.tasks.analysis.strata.strata import distances  # noqa: PLC0415 - only plants with parameters pay for it
+
+        lost = distances(tuple(sorted(equations, key=str)) for equations in together if equations)
+        return (*alone, *(Condition("existence", distance) for distance in lost))
 
     @cached_property
     def _factors(self) -> tuple[Scalar, ...]:

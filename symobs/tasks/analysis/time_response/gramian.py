@@ -332,15 +332,16 @@ def by_integral(plant: StateSpace, of: str, horizon: Any) -> Gramian:
 
 
 @task
-def gramian(plant: StateSpace, *, horizon: Horizon = None, of: Name = "observability", method: Name = "auto") -> Result:
+def gramian(plant: StateSpace, *, horizon: Horizon = None, of: Name = "auto", method: Name = "auto") -> Result:
     """Return the Gramian W = ∫₀ᵀ e^{Aᵀt} Cᵀ C e^{At} dt (of = "controllability": ∫₀ᵀ e^{At} B Bᵀ e^{Aᵀt} dt).
 
-    plant    n states; C (or B) must be given
+    plant    n states; C (or B) must be given; without `of` it is observability where there is a C
     horizon  T > 0, a symbol or a number ("T" if left out), or "inf"; in discrete time a number of steps (n if left out)
     Returns matrix, determinant, finite_sum (Σ (Aᵀ)ᵏ Cᵀ C Aᵏ), rank, kernel; verdict no where the integral over all time
     does not exist.  Raises `InputError` where the horizon is not one.
     Source: R. E. Kalman, Y. C. Ho and K. S. Narendra (1963); R. W. Brockett (1970).
     """
+    of = plant.pair_asked_for(of)
     if of not in KINDS_OF:
         message = f"{of[:40]!r} is not a kind of Gramian"
         raise InputError(message, where="specification.of", repair="write observability or controllability")

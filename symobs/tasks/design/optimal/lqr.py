@@ -85,4 +85,4 @@ def lqr(
     plant.require("B", task="lqr")
     n, m = plant.order, plant.inputs
     cross = Matrix.zeros(n, m) if N is None else read_gain(N, plant, "N", (n, m))
-    return design_optimal(OptimalFeedback, plant, {"Q": (Q, n), "R": (R, m)}, ("N", cross), method)
+    return design_optimal(OptimalFeedback, plant, {"Q": (Q, n), "R": (R, m)}, {"N": cross}, method)

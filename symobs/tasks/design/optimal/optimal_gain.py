@@ -152,7 +152,7 @@ class OptimalGain(Result):
         """Return the data and the exact answers by their letters; `noise` is GWGᵀ."""
         m, answer = self.plant.matrices, self.answer
         found: dict[str, Any] = {"A": m.A, **self.weights, self.letter: answer[self.letter], "P": answer["P"]}
-        found |= {"B": m.B} if self.letter == "K" else {"C": m.C, "noise": self.regulator.Q}
+        found |= {"B": m.B} if self.letter == "K" else {"C": m.C, "noise": self.regulator.Q, "shared": self.regulator.N}
         return {name: value for name, value in found.items() if value is not None}
 
     def claims(self) -> Iterator[Claim | Statement]:
@@ -433,10 +433,10 @@ def design_optimal(
     kind: type[OptimalGain],
     plant: StateSpace,
     given: Mapping[str, tuple[object, int]],
-    further: tuple[str, Matrix],
+    further: Mapping[str, Matrix],
     method: str,
 ) -> Result:
-    """Return the design for weights that are given, with their sizes, and one more matrix.
+    """Return the design for weights that are given, with their sizes, and further matrices.
 
     Raises `InputError` where a weight is missing or has not its sign, and `Undecided` for too many states.
     """
@@ -447,8 +447,8 @@ def design_optimal(
     if plant.order > MOST_STATES:
         raise Undecided(f"{kind.task} is undecided: {plant.order} states are too many")
     read = [read_symmetric(value, plant, name, size) for name, (value, size) in given.items()]
-    plant, found = in_common_field(plant, *read, further[1])
-    weights = dict(zip((*given, further[0]), found, strict=True))
+    plant, found = in_common_field(plant, *read, *further.values())
+    weights = dict(zip((*given, *further), found, strict=True))
     symbols, signs = plant.symbols, _needed_signs(weights, plant.symbols.signs)
     plant = plant.with_symbols(replace(symbols, signs={**symbols.signs, **signs})) if signs else plant
     _require_signs(kind.regulator_of(plant, weights), weights, plant.symbols.signs)
@@ -595,7 +595,7 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
         raise NoFactor("its closed form is too long")
     product = Matrix.identity(2 * n)
     for factor in factors:
-        product = _normal(product @ polynomial_of(factor, variable, H))
+        product = in_normal_form(product @ polynomial_of(factor, variable, H))
     left, right = product.select(range(2 * n), range(n, 2 * n)), product.select(range(2 * n), range(n))
     relations = identities(factors)[1]
     try:
@@ -604,10 +604,10 @@ def _exact_solution(regulator: Regulator, plant: StateSpace) -> Solution:
         raise NoFactor("its closed form is too long") from error
     if P is None:
         raise NoFactor("the polynomial has roots on the boundary")
-    P = _normal(P)
+    P = in_normal_form(P)
     A, B, R, N = regulator.A, regulator.B, regulator.R, regulator.N
     weight, coupled = (R + B.T @ P @ B, B.T @ P @ A) if regulator.discrete else (R, B.T @ P)
-    gain = _normal(_normal(weight).solve(coupled + N.T))
+    gain = in_normal_form(in_normal_form(weight).solve(coupled + N.T))
     loop = (A - B @ gain).characteristic_polynomial(variable)
     polynomial = from_coefficients([reduced(c) for c in loop.coefficients(variable)], variable)
     if in_parameters:  # 1 − π = 2σ/(1 + σ) is seen to be positive, and it would not with the root in the numerator
@@ -629,5 +629,6 @@ def _are_decidable(values: Iterable[Scalar | Matrix]) -> bool:
         return False
 
 
-def _normal(matrix: Matrix) -> Matrix:
+def in_normal_form(matrix: Matrix) -> Matrix:
+    """Return a matrix with the normal forms of its entries, roots in roots among them."""
     return Matrix.of([[reduced(entry) for entry in row] for row in matrix.normal().rows], matrix.shape[1])

@@ -75,8 +75,9 @@ def _open_radicands(page: Builder, values: Iterable[Scalar | Matrix]) -> list[Sc
 
 def _set_weights(page: Builder, result: OptimalGain) -> None:
     """Give the weights, or the intensities of the noise, their letters."""
+    letters = _LETTERS if result.letter == "K" else {**_LETTERS, "N": "N_n"}
     for name, value in result.weights.items():
-        page.set(_LETTERS[name], value)
+        page.set(letters[name], value)
     if result.letter == "L":
         page.set("N_x", result.regulator.N)
         page.set("Q_x", result.regulator.Q)
@@ -90,10 +91,12 @@ def _tell_weights(page: Builder, result: OptimalGain) -> None:
         names = names[:2] if result.regulator.N.is_zero else names
         say = "lqr_cost" if result.regulator.N.is_zero else "lqr_cost_cross"
     else:
-        names = names if _has_input_matrix(result) else names[:2]
+        names = ["W", "V", "G"] if _has_input_matrix(result) else ["W", "V"]
         say = "kalman_noise_through" if _has_input_matrix(result) else "kalman_noise"
     shown = [relation(page[_LETTERS[name]], result.weights[name]) for name in names]
     page.equal(*shown, say=f"{say}_{time}")
+    if result.letter == "L" and not result.regulator.N.is_zero:
+        page.equal(relation(page["N_n"], result.weights["N"]), say="kalman_shared")
 
 
 def _has_input_matrix(result: OptimalGain) -> bool:
@@ -114,11 +117,14 @@ def _solve(page: Builder, result: OptimalGain) -> None:
 
 def _problem(page: Builder, result: OptimalGain) -> tuple[Term, Term, Term, Term]:
     """Return the terms of A, B, Q and R of the regulator, the cross weight removed."""
-    if result.letter == "L":
-        return page["A.T"], page["C.T"], page[_noise(result)], page["V_n"]
-    A, B, Q, R = (page[name] for name in ("A", "B", "Q_x", "R_u"))
+    names = ("A", "B", "Q_x", "R_u") if result.letter == "K" else ("A.T", "C.T", _noise(result), "V_n")
+    A, B, Q, R = (page[name] for name in names)
     if result.regulator.N.is_zero:
         return A, B, Q, R
+    if result.letter == "L" and not page.defines("A_N"):
+        shared = _shared(result)
+        page.define("A_N", f"A.T - C.T V_n^-1 ({shared}).T", say="optimal_uncrossed")
+        page.define("Q_N", f"{_noise(result)} - {shared} V_n^-1 ({shared}).T")
     if not page.defines("A_N"):
         page.define("A_N", "A - B R_u^-1 N_x.T", say="optimal_uncrossed")
         page.define("Q_N", "Q_x - N_x R_u^-1 N_x.T")
@@ -128,6 +134,11 @@ def _problem(page: Builder, result: OptimalGain) -> tuple[Term, Term, Term, Term
 def _noise(result: OptimalGain) -> str:
     """Return GWGᵀ, or W where the noise acts on each state."""
     return "G_n W_n G_n.T" if _has_input_matrix(result) else "W_n"
+
+
+def _shared(result: OptimalGain) -> str:
+    """Return GN, or N where the noise acts on each state."""
+    return "G_n N_n" if _has_input_matrix(result) else "N_n"
 
 
 # -- exact -------------------------------------------------------------------------------------------------------------
@@ -159,13 +170,19 @@ def _tell_exact(page: Builder, result: OptimalGain) -> None:
         page.define(letter, page.value(answer[letter]), say="optimal_gain", answer=True, closing=False)
 
     equations = result.equations(discrete=plant.is_discrete, cross=not result.regulator.N.is_zero)
-    riccati, gain = (page.line(each.replace("noise", _noise(result)), **_LETTERS) for each in equations)
+    written = (each.replace("noise", _noise(result)).replace("shared", _shared(result)) for each in equations)
+    riccati, gain = (page.line(each, **_LETTERS) for each in written)
     page.verified("optimal_checked", riccati=riccati, gain=gain)
     chi = page.define(
         f"chi_{letter}", _pencil(page, result, page[letter]).apply("det"), answer["polynomial"], silent=True
     )
     found = "optimal_feedback_found" if letter == "K" else "optimal_filter_found"
     page.conclude(found, predicate("stable", chi))
+    if letter == "L" and plant.is_discrete:
+        page.define(
+            "L_f", "P_x C.T (C P_x C.T + V_n)^-1", result.fields["L_filter"], say="kalman_update", closing=False
+        )
+        page.define("P_f", "P_x - L_f C P_x", result.fields["P_filter"], closing=False)
     if letter == "K" and plant.inputs == 1 and not plant.is_discrete and result.regulator.N.is_zero:
         page.remark("optimal_margins", predicate("stable", chi))
 

@@ -13,6 +13,8 @@ PHRASES: dict[str, str] = {
     "kalman_noise_through_continuous": "White noise of intensity $W_n$ acts on the states through $G_n$, and independent white noise of intensity $V_n$ on the outputs. The observer gain $L$ for which the error has the smallest covariance is sought, where",
     "kalman_noise_discrete": "White noise with the covariance $W_n$ acts on the states, and independent white noise with the covariance $V_n$ on the outputs. The observer gain $L$ for which the error has the smallest covariance is sought, where",
     "kalman_noise_through_discrete": "White noise with the covariance $W_n$ acts on the states through $G_n$, and independent white noise with the covariance $V_n$ on the outputs. The observer gain $L$ for which the error has the smallest covariance is sought, where",
+    "kalman_shared": "The two noises are correlated, with $N_n$ for the expectation of their product:",
+    "kalman_update": "This $L$ leads from the output $y$ to the prediction of the next state, and $P_x$ is the covariance of the error before $y$ is known. After the measurement gain and covariance are",
     "optimal_uncrossed": "Completing the square removes the cross weight:",
     "optimal_provided": "What follows holds for {condition}.",
     "optimal_open_loop": "The characteristic polynomial and the numerators from the input to the states are, with their mirror images,",
@@ -57,6 +59,8 @@ QUESTIONS: dict[str, str] = {
     "ask lqr N": "Find the state feedback that minimises the integral of $xᵀ Q_x x + 2 xᵀ N_x u + uᵀ R_u u$ over all times. What is the polynomial of the loop?",
     "ask lqr N discrete": "Find the state feedback that minimises the sum of $xᵀ Q_x x + 2 xᵀ N_x u + uᵀ R_u u$ over all instants. What is the polynomial of the loop?",
     "ask kalman": "Find the gain of the steady-state Kalman filter for input noise of intensity $W_n$ and output noise of intensity $V_n$. What is the covariance of the error?",
+    "ask kalman N": "Find the gain of the steady-state Kalman filter for input noise of intensity $W_n$ and output noise of intensity $V_n$, which are correlated with $N_n$. What is the covariance of the error?",
+    "ask kalman G N": "Find the gain of the steady-state Kalman filter for noise of intensity $W_n$ that enters through $G_n$, and output noise of intensity $V_n$, which are correlated with $N_n$. What is the covariance of the error?",
     "ask kalman G": "Find the gain of the steady-state Kalman filter for noise of intensity $W_n$ that enters through $G_n$, and output noise of intensity $V_n$. What is the covariance of the error?",
 }
 
