@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 SOURCES = sorted((ROOT / "symobs").rglob("*.py"))
 TEXTS = {path.relative_to(ROOT).as_posix(): path.read_text("utf-8") for path in SOURCES}
-#: The lines of all modules that say "(trusted)" at their beginning: whoever audits the checks reads these.
-MOST_TRUSTED = 5400
+#: The lines without imports of all modules that say "(trusted)" at their beginning: whoever audits the checks reads these.
+MOST_TRUSTED = 4900
 #: Who loads modules by name: the package, the registry, the command line, the tables of phrases and of kinds of work.
 BY_NAME = (
     "symobs/__init__.py",
@@ -59,9 +59,15 @@ def test_a_trespass_is_seen(source: str) -> None:
 
 
 def test_what_is_trusted_stays_short() -> None:
-    trusted = {place: text.count("\n") for place, text in TEXTS.items() if "(trusted)" in text.partition("\n")[0]}
+    trusted = {place: _read_lines(text) for place, text in TEXTS.items() if "(trusted)" in text.partition("\n")[0]}
     assert {"check.py", "claims.py", "result.py", "wording_check.py"} <= {place.rpartition("/")[2] for place in trusted}
     assert sum(trusted.values()) <= MOST_TRUSTED, trusted
+
+
+def _read_lines(text: str) -> int:
+    """The lines of a module that are no imports."""
+    nodes = (node for node in ast.walk(ast.parse(text)) if isinstance(node, (ast.Import, ast.ImportFrom)))
+    return text.count("\n") - sum((node.end_lineno or 0) - node.lineno + 1 for node in nodes)
 
 
 def test_importing_symobs_imports_nothing_heavy() -> None:

@@ -45,7 +45,7 @@ from symobs.proof.derivation import (
     Sentence,
     Tabulate,
 )
-from symobs.proof.derivation.builder import left_out
+from symobs.proof.derivation.builder import warn_left_out
 from symobs.proof.derivation.decimals_check import check_decimals, is_in_order
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def in_decimals(derivation: Derivation, steps: Sequence[Step], digits: int) -> t
     try:
         check_decimals(exact, shown, derivation.variable, digits)
     except DerivationRejected:
-        left_out("a line in decimals")
+        warn_left_out("a line in decimals")
         shown = tuple(_held(*pair, derivation.variable, digits) for pair in zip(exact, shown, strict=True))
         check_decimals(exact, shown, derivation.variable, digits)
     return tuple(_saying_so(step, digits) for step in shown) if any(map(_is_rounded, shown)) else shown

@@ -210,18 +210,18 @@ class _PageBlocks:
 
     def emit_given(self, statement: Sequence[Step]) -> None:
         """Emit the given data that are not printed yet."""
-        news = [new for step in statement for new in self.news(step)]
+        news = [new for step in statement for new in self.unprinted_steps(step)]
         if news:
             self.blocks.append(Heading("", (self.language.phrases["given"],), self.time))
             for step in news:
                 self.emit_step(step)
 
-    def news(self, step: Step) -> Iterator[Step]:
+    def unprinted_steps(self, step: Step) -> Iterator[Step]:
         """Yield the parts of a step of the statement that are not printed yet."""
         match step:
             case Section(steps=steps):
                 for inner in steps:
-                    yield from self.news(inner)
+                    yield from self.unprinted_steps(inner)
             case Given(silent=True):
                 pass
             case Given(relations=relations):

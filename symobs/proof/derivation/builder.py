@@ -69,7 +69,7 @@ Member: TypeAlias = Term | Scalar | Matrix | int
 Slot: TypeAlias = Term | Fact | Counted | StateChoice | str | Scalar | Matrix | int
 
 
-def left_out(what: str) -> None:
+def warn_left_out(what: str) -> None:
     """Warn that a page lacks something since its check failed, which is a bug."""
     message = f"{what} is left out: its check failed; please report this: it is a bug of symobs"
     warnings.warn(message, SymobsWarning, stacklevel=3)
@@ -93,7 +93,7 @@ def _decided(
             environment, kept = after(step, environment, whole.discrete), step
         except (DerivationRejected, *UNREADABLE):
             if isinstance(step, Plot):
-                left_out(f"a picture of kind {type(step.picture).__name__}")
+                warn_left_out(f"a picture of kind {type(step.picture).__name__}")
                 continue
             if isinstance(step, Section):
                 inside, environment = _decided(step.steps, environment, whole)
@@ -112,7 +112,7 @@ def _decided_case(step: CaseStep, environment: Environment, whole: Derivation) -
         inside, _ = _decided(step.steps, inside_case(step, environment), whole)
     except (DerivationRejected, *UNREADABLE) as error:
         if not isinstance(error, TooLarge) and not isinstance(error.__cause__, TooLarge):
-            left_out("a case")
+            warn_left_out("a case")
         relations = step.when.relations if isinstance(step.when, Conjunction) else (step.when,)
         zeros, others = ([r for r in relations if ("=" in r.operators) is equal] for equal in (True, False))
         if not zeros:
@@ -137,7 +137,7 @@ def shows(facts: Iterable[Relation], environment: Environment) -> bool:
         if verify(fact, environment)[0]:
             continue
         if can_be_shown(fact, environment):
-            left_out(f"the line {plain_relation(fact, environment.variable)}")
+            warn_left_out(f"the line {plain_relation(fact, environment.variable)}")
         return False
     return True
 

@@ -49,6 +49,7 @@ from symobs.proof.derivation.facts import (
     reject,
     subjects,
 )
+from symobs.proof.derivation.sentence_context import SentenceContext
 from symobs.proof.derivation.steps import (
     CaseStep,
     Conclude,
@@ -67,12 +68,11 @@ from symobs.proof.derivation.steps import (
     literals,
 )
 from symobs.proof.derivation.wording_check import (
-    Said,
     demands,
-    fits,
     formula_in,
+    meets_obligations,
     reject_other_map,
-    rests,
+    relation_fits,
     with_limit,
 )
 from symobs.stability.criteria.stability import monic
@@ -238,7 +238,7 @@ def _drawn(picture: Picture, subject: Formula, environment: Environment, discret
 
 def _sentence(sentence: Sentence, environment: Environment, discrete: bool) -> None:  # noqa: FBT001
     for _, slot in sentence.slots:
-        if not fits(sentence.key, slot, environment):
+        if not relation_fits(sentence.key, slot, environment):
             reject(f"{slot}, which is not what {sentence.key} speaks of,")
         if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Evaluated, SymbolList)):
             _fact(slot, environment, discrete)
@@ -256,7 +256,9 @@ def _owed(sentence: Sentence, step: Step, environment: Environment) -> None:
         reject(f"{sentence.key}, which rests on {', '.join(asserted)},")
     introduced = step.relation if isinstance(step, Define) else None
     shown = step.relations if isinstance(step, Equal) else ()
-    if not rests(sentence.key, Said((*facts, *shown), environment, dict(sentence.slots), introduced)):
+    if not meets_obligations(
+        sentence.key, SentenceContext((*facts, *shown), environment, dict(sentence.slots), introduced)
+    ):
         reject(f"{sentence.key}, which rests on another fact, number or equation,")
     reject_other_map(sentence, introduced, environment)
 

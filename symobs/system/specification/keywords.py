@@ -522,7 +522,7 @@ def _read_pattern(text: str, where: str, shape: tuple[int, int]) -> tuple[tuple[
 # Functions of parameters in poles and polynomials: plant and polynomials over one base, with what vanishes there.
 
 
-def over_common_data(plant: StateSpace, *asked: Any) -> tuple[StateSpace, tuple[Any, ...]]:
+def in_common_field(plant: StateSpace, *asked: Any) -> tuple[StateSpace, tuple[Any, ...]]:
     """Return a plant and what is asked for, the functions in desired polynomials and further matrices among its data.
 
     cos θ and e⁻ᵀ are letters of their own, as in the entries of a plant; on the plant that is returned cos² θ + sin² θ = 1

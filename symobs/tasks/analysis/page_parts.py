@@ -121,7 +121,7 @@ def case_steps(page: Builder, result: Result, write: Callable[[Builder, Any], No
         inner.environment = here.extended_by(values=matrices)
         write(inner, found)
         inner.steps += case_steps(inner, found, write)
-        anew = set_anew(here, inner.environment)
+        anew = redefined_letters(here, inner.environment)
         yield CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)
 
 
@@ -135,7 +135,7 @@ def environment_on(
         return None
 
 
-def set_anew(outer: Environment, inner: Environment) -> tuple[str, ...]:
+def redefined_letters(outer: Environment, inner: Environment) -> tuple[str, ...]:
     """Return the letters, other than the data's, that a case gives a value that they have not outside."""
     return tuple(name for name, value in inner.values.items() if name not in "ABCD" and value != outer.values.get(name))
 
@@ -285,10 +285,12 @@ def in_blocks(page: Builder, value: Matrix, heights: Sequence[int], widths: Sequ
         [range(end - size, end) for size, end in zip(sizes, accumulate(sizes), strict=True) if size]
         for sizes in (heights, widths)
     ]
-    return block([[spread(page, value.select(rows, columns)) for columns in parts[1]] for rows in parts[0]])
+    return block(
+        [[letters_apart_from_data(page, value.select(rows, columns)) for columns in parts[1]] for rows in parts[0]]
+    )
 
 
-def spread(page: Builder, value: Matrix) -> Term:
+def letters_apart_from_data(page: Builder, value: Matrix) -> Term:
     """Return a matrix written out, the letters in an entry apart from the data where it is shorter: −k/m − l₁."""
     letters = page.environment.coefficients.keys() & value.names
     if not letters:
@@ -367,7 +369,9 @@ def undecided(page: Builder, case: Case) -> Step:
 HIDDEN = {"observability": ("N", "X"), "controllability": ("N_K", "X_K")}
 
 
-def hidden(page: Builder, is_observer: bool, letters: tuple[str, str] = ("N", "X")) -> tuple[Relation, ...]:  # noqa: FBT001
+def unobservable_relations(
+    page: Builder, letters: tuple[str, str] = ("N", "X"), *, is_observer: bool
+) -> tuple[Relation, ...]:
     """Return that the columns of N are a basis of an invariant subspace never seen (never moved): CN = 0, AN = NX."""
     N, X = (page[name] for name in letters)
     A, row = (page["A"], page["C"]) if is_observer else (page["A.T"], page["B.T"])

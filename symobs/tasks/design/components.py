@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix
 from symobs.proof.derivation.builder import Builder, relation
-from symobs.tasks.analysis.page_parts import is_narrow, spread
+from symobs.tasks.analysis.page_parts import is_narrow, letters_apart_from_data
 from symobs.tasks.design.readability import COMPONENT, COMPONENTS_ORDER
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def combination(page: Builder, pairs: list[tuple[Term, Term]]) -> Term:
             size = -single if negative else single
             part = signal if size.is_one else page.value(size) * signal
         else:
-            part = spread(page, value) @ signal
+            part = letters_apart_from_data(page, value) @ signal
         part = -part if negative and total is None else part
         total = part if total is None else total - part if negative else total + part
     return summed(pairs) if total is None else total

@@ -11,7 +11,8 @@ from symobs.proof.certificate.claims import verify
 from symobs.proof.derivation import CaseStep, Conclude
 from symobs.proof.derivation.builder import Builder, differs, predicate, relation, sentence
 from symobs.proof.derivation.facts import PREDICATES
-from symobs.proof.derivation.wording_check import Said, rests
+from symobs.proof.derivation.sentence_context import SentenceContext
+from symobs.proof.derivation.wording_check import meets_obligations
 from symobs.tasks.analysis.page_parts import environment_on
 from symobs.tasks.analysis.strata.strata import distances, systems_of
 
@@ -109,4 +110,4 @@ def _holds(step: Conclude, environment: Environment) -> bool:
             if not PREDICATES[fact.name](value, environment, False):  # noqa: FBT003 - it is of no time
                 return False
     said = step.sentence
-    return said is None or rests(said.key, Said(step.facts, environment, dict(said.slots)))
+    return said is None or meets_obligations(said.key, SentenceContext(step.facts, environment, dict(said.slots)))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from symobs.exact import Matrix
 from symobs.exact.core.generators import substitute
 from symobs.ground.errors import CertificateRejected
-from symobs.system.specification import over_common_data
+from symobs.system.specification import in_common_field
 from symobs.tasks.result.output_methods import OutputMethods
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ class TaskTraits(OutputMethods):
             if not all(isinstance(gain, Matrix) for gain in (*chosen.values(), *here.values())):
                 continue
             try:
-                _, kept = over_common_data(found.plant, *(substitute(gain, values) for gain in chosen.values()))
+                _, kept = in_common_field(found.plant, *(substitute(gain, values) for gain in chosen.values()))
                 gains = dict(zip(letters, kept, strict=True))
                 if gains != here and all(map(found.plant.admits, kept)):
                     found = found.with_gains(gains)

@@ -28,7 +28,7 @@ from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import StabilityVerdict, stability
 from symobs.stability.inequalities.simplify import as_inequality, cleared, simplify
 from symobs.system.conditions import sign_of, vanishing_factors
-from symobs.system.specification import over_common_data, read_symmetric
+from symobs.system.specification import in_common_field, read_symmetric
 from symobs.tasks.analysis.page_parts import case_steps, determinant_form, given
 from symobs.tasks.analysis.strata.strata import PutAgain
 from symobs.tasks.analysis.time_response.horizons import (
@@ -236,7 +236,7 @@ def lyapunov(plant: StateSpace, *, Q: Intensity = None, method: Name = "auto") -
     weight = Matrix.identity(order) if Q is None else read_symmetric(Q, plant, "Q", order)
     if order > (MOST_WITH_PARAMETERS if plant.matrices.A.names else MOST_STATES):
         raise Undecided(f"lyapunov is undecided: {order} states are too many")
-    plant, (weight,) = over_common_data(plant, weight)
+    plant, (weight,) = in_common_field(plant, weight)
     return choose("lyapunov", method, "entries").solve(plant, weight).asked(method)
 
 

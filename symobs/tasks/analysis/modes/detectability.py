@@ -44,8 +44,8 @@ from symobs.tasks.analysis.page_parts import (
     as_written,
     given,
     hidden_polynomial,
+    redefined_letters,
     say_stability,
-    set_anew,
     stratum_of,
     undecided,
 )
@@ -477,5 +477,5 @@ def _case(page: Builder, letter: str, case: Case) -> Step:
         inner.set("X", test["restricted"])
     _generic(inner, found)
     _cases(inner, letter, found)
-    anew = set_anew(page.environment, inner.environment)
+    anew = redefined_letters(page.environment, inner.environment)
     return CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(inner.steps), anew=anew)

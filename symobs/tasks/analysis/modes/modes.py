@@ -36,7 +36,13 @@ from symobs.proof.derivation.builder import Builder, relation, sentence, shows
 from symobs.proof.derivation.facts import on_stratum
 from symobs.stability.criteria.stability import on_boundary, stability
 from symobs.system.conditions import sign_of
-from symobs.tasks.analysis.page_parts import as_written, conditions_of, formula_of_factored, set_anew, undecided
+from symobs.tasks.analysis.page_parts import (
+    as_written,
+    conditions_of,
+    formula_of_factored,
+    redefined_letters,
+    undecided,
+)
 from symobs.tasks.analysis.rank.observability import Controllability, Observability
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import (
@@ -485,7 +491,7 @@ def eigenvectors_there(page: Builder, case: Case, say: str = "", *, closing: str
     if closing:
         inner.conclude(closing)
     inner.steps += meeting_steps(inner, found)
-    anew = set_anew(page.environment, inner.environment)
+    anew = redefined_letters(page.environment, inner.environment)
     words = sentence(say, {}) if say else None
     step = CaseStep(conditions_of(case), tuple(case.substitution.items()), tuple(inner.steps), words, anew)
     return step, is_whole

@@ -10,7 +10,8 @@ from symobs.formula.tree import Roots
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.derivation.builder import Builder
-from symobs.proof.derivation.wording_check import Said, rests
+from symobs.proof.derivation.sentence_context import SentenceContext
+from symobs.proof.derivation.wording_check import meets_obligations
 from symobs.tasks.analysis.modes.modes import (
     TESTS,
     ModeResult,
@@ -126,7 +127,7 @@ class PopovBelevitchHautus(ModeResult):
         at_conditions = Builder(self.plant)
         at_conditions.environment = page.environment
         at_conditions.assume("pbh_provided", *(c.expression for c in self.holds_where if c.kind == "existence"))
-        if not rests(f"pbh_yes_{self.kind}", Said((), at_conditions.environment)):
+        if not meets_obligations(f"pbh_yes_{self.kind}", SentenceContext((), at_conditions.environment)):
             return False
         cases = [eigenvectors_there(page, case, closing=f"pbh_no_{self.kind}") for case in self.rank_cases]
         if not all(is_whole for _, is_whole in cases):

@@ -10,7 +10,7 @@ from symobs.formula.tree import Conjunction, Roots
 from symobs.formula.tree.term import block
 from symobs.proof.derivation import CaseStep, Conclude, Equal, Step
 from symobs.proof.derivation.builder import Builder, differs, relation, sentence, shows
-from symobs.proof.derivation.wording_check import fits
+from symobs.proof.derivation.wording_check import relation_fits
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import (
     HIDDEN,
@@ -57,7 +57,7 @@ def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> bo
         _outside_drops(page, [c.expression for c in result.holds_where if c.kind == "existence"])
         rank = page.line(f"rank({letter}) = {{value}}", value=result.answer["rank"])
         is_said = result.verdict == "yes" or bool(page.environment.relations)
-        is_full = is_said and fits(f"full_rank_{kind}", rank, page.environment)
+        is_full = is_said and relation_fits(f"full_rank_{kind}", rank, page.environment)
         page.conclude(f"{'full' if is_full else 'generic'}_rank_{kind}", rank=rank)
         return is_full
     signs = page.plant.symbols.signs
@@ -155,7 +155,7 @@ def _deficient(page: Builder, letter: str, result: RankResult, kind: str) -> Non
 def tell_deficient(page: Builder, letter: str, rank: int, kind: str, *, everywhere: bool = True) -> None:
     """Say that a rank is below the order, and whether it is this one for all parameters or for generic ones."""
     found = page.line(f"rank({letter}) = {{value}} < {{order}}", value=rank, order=page.plant.order)
-    key = "no" if everywhere and fits(f"no_{kind}", found, page.environment) else "generic_low"
+    key = "no" if everywhere and relation_fits(f"no_{kind}", found, page.environment) else "generic_low"
     page.conclude(f"{key}_{kind}", rank=found)
 
 

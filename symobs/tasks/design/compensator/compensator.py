@@ -16,7 +16,7 @@ from symobs.system.specification import (
     Poles,
     PolynomialText,
     desired_polynomial,
-    over_common_data,
+    in_common_field,
     read_gain,
     reject_both,
 )
@@ -319,7 +319,7 @@ def observer_based(
         lambda: wanted("control", control, plant.order),
         of_observer,
     )
-    plant, (control_wish, observer_wish) = over_common_data(plant, control_wish, observer_wish)
+    plant, (control_wish, observer_wish) = in_common_field(plant, control_wish, observer_wish)
     found: OutputFeedback = chosen.solve(plant, control_wish, observer_wish)
     return found
 
@@ -334,7 +334,7 @@ def of_known_state(plant: StateSpace, *, task: str, control: tuple[object, objec
         asked = read_gain(gain, plant, "K", (plant.inputs, plant.order))
     else:
         asked = desired_polynomial(plant, *control, names=("control_poles", "control_polynomial"))
-    plant, (asked,) = over_common_data(plant, asked)
+    plant, (asked,) = in_common_field(plant, asked)
     return KnownState.design(plant, (asked,), "state_feedback")
 
 

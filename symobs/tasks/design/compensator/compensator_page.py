@@ -11,7 +11,7 @@ from symobs.formula.tree import Evaluated, HoldsExactlyWhere, Literal, Quotient,
 from symobs.formula.tree.term import Term, block
 from symobs.formula.tree.written import stacked
 from symobs.proof.derivation.builder import Builder, predicate, relation
-from symobs.proof.derivation.wording_check import modes_of_double
+from symobs.proof.derivation.wording_of_polynomials import modes_of_double
 from symobs.stability.criteria.stability import monic, no_stable_compensator, stability
 from symobs.stability.inequalities.simplify import as_inequality
 from symobs.system.specification import DesiredPolynomial

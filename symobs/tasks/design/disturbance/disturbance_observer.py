@@ -20,7 +20,7 @@ from symobs.ground.errors import CertificateRejected
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.system import StateSpace
 from symobs.system.conditions import joined
-from symobs.system.specification import DesiredPolynomial, desired_polynomial, over_common_data
+from symobs.system.specification import DesiredPolynomial, desired_polynomial, in_common_field
 from symobs.tasks.analysis.page_parts import case_steps, given, say_stability
 from symobs.tasks.analysis.rank.rank_page import assume_rank
 from symobs.tasks.analysis.strata.strata import found_once, solved
@@ -265,7 +265,7 @@ def disturbance_observer(
     exosystem = read_exosystem(plant, read_disturbance_input(plant, E), S, V)
     desired = desired_polynomial(plant, poles, polynomial, degree=plant.order + exosystem.order)
     assert desired is not None  # noqa: S101 - required
-    plant, (desired, *parts) = over_common_data(plant, desired, *exosystem)
+    plant, (desired, *parts) = in_common_field(plant, desired, *exosystem)
     exosystem = Exosystem(*parts)
     return choose("disturbance_observer", method, "extended_state").solve(plant, exosystem, desired).asked(method)
 

@@ -20,8 +20,8 @@ from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.stability.criteria.stability import stability
 from symobs.system import StateSpace
 from symobs.system.conditions import joined
-from symobs.system.specification import DesiredPolynomial, desired_polynomial, over_common_data
-from symobs.tasks.analysis.page_parts import case_steps, given, is_narrow, say_stability, spread
+from symobs.system.specification import DesiredPolynomial, desired_polynomial, in_common_field
+from symobs.tasks.analysis.page_parts import case_steps, given, is_narrow, letters_apart_from_data, say_stability
 from symobs.tasks.analysis.rank.rank_page import assume_rank
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
 from symobs.tasks.analysis.strata.strata import common_places, found_once, solved
@@ -333,7 +333,7 @@ def unknown_input_observer(
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
     enters = read_disturbance_input(plant, E)
-    plant, (desired, enters) = over_common_data(plant, desired, enters)
+    plant, (desired, enters) = in_common_field(plant, desired, enters)
     return choose("unknown_input_observer", method, "decoupled").solve(plant, enters, desired).asked(method)
 
 
@@ -463,7 +463,7 @@ def _gain(page: Builder, design: UnknownInputObserver) -> None:
     state = page("A_T - {L} C", L=L)
     driven = L + state @ page["H_d"]
     is_short = is_narrow(Matrix.block([[state.value, driven.value]]))  # then the observer has the values
-    shown = [[] if is_short else [spread(page, part.value)] for part in (state, driven)]
+    shown = [[] if is_short else [letters_apart_from_data(page, part.value)] for part in (state, driven)]
     page.define("F_d", state, *shown[0], say="uio_state_matrix", closing=False)
     page.define("L_y", "L + F_d H_d", *shown[1], closing=False)
     page.conclude_silently(*(relation(page[name], design.answer[of]) for name, of in _LETTERS.items()))

@@ -9,7 +9,7 @@ from symobs.exact import Matrix
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.ground.dataclass import dataclass
 from symobs.proof.derivation.builder import Builder, relation
-from symobs.tasks.analysis.page_parts import given, spread
+from symobs.tasks.analysis.page_parts import given, letters_apart_from_data
 from symobs.tasks.analysis.rank.observability import Observability
 from symobs.tasks.design.block_diagrams import draw_collected, draw_copy
 from symobs.tasks.design.components import write_components
@@ -68,7 +68,7 @@ def write_found(page: Builder) -> None:
     m = page.plant.matrices
     page.conclude_silently("H_x = L")
     closed = page["A - L C"]
-    collected, numbers = page["(A - L C) x_hat"], spread(page, closed.value) @ page["x_hat"]
+    collected, numbers = page["(A - L C) x_hat"], letters_apart_from_data(page, closed.value) @ page["x_hat"]
     if m.has_input:
         driven = page["B - L D"] if m.has_feedthrough else page["B"]
         collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]
@@ -212,11 +212,11 @@ def write_observer(page: Builder, *, drawn: bool = False, alone: bool = True) ->
         page.equal(page.line("{innovation} = C e", innovation=innovation), say="feedthrough_cancels")
     is_collected = alone or m.has_feedthrough  # then A − LC is written out there
     members = [rate - (model + L @ innovation), page["(A - L C) e"]]
-    members += [] if is_collected else [spread(page, closed.value) @ page["e"]]
+    members += [] if is_collected else [letters_apart_from_data(page, closed.value) @ page["e"]]
     error = page.line("e = x - x_hat")
     page.equal(relation(page["e'"], *members), say="error_equation", error=error)
     _say_deadbeat(page, closed)
-    collected, numbers, driven = closed @ x_hat, spread(page, closed.value) @ x_hat, None
+    collected, numbers, driven = closed @ x_hat, letters_apart_from_data(page, closed.value) @ x_hat, None
     if m.has_input:
         driven = page["B - L D"] if m.has_feedthrough else page["B"]
         collected, numbers = collected + driven @ page["u"], numbers + driven.as_value @ page["u"]

@@ -18,7 +18,7 @@ from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.certificate.claims import Claim, Statement
 from symobs.proof.derivation.builder import relation
 from symobs.stability.criteria.stability import StabilityVerdict, stability
-from symobs.system.specification import desired_polynomial, over_common_data, read_entries, read_gain, reject_both
+from symobs.system.specification import desired_polynomial, in_common_field, read_entries, read_gain, reject_both
 from symobs.tasks.analysis.page_parts import HIDDEN
 from symobs.tasks.analysis.strata.strata import region_of
 from symobs.tasks.design import readability
@@ -442,7 +442,7 @@ def design_gain(
         return kind.of_given(plant, read_gain(given, plant, gain, shape))
     desired = desired_polynomial(plant, poles, polynomial)
     assert desired is not None  # noqa: S101 - required
-    plant, (desired,) = over_common_data(plant, desired)
+    plant, (desired,) = in_common_field(plant, desired)
     chosen = choose(kind.task, method, "ackermann" if several == 1 else "sylvester")
     if member != "simple":
         reject_both("member", member, zero, None, other="zero")

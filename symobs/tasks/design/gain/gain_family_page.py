@@ -11,7 +11,13 @@ from symobs.proof.derivation import CaseStep, Note
 from symobs.proof.derivation.builder import Builder, relation, sentence
 from symobs.stability.criteria.stability import monic
 from symobs.system.conditions import vanishing_factors
-from symobs.tasks.analysis.page_parts import determinant_form, formula_of_factored, spread, stratum_of, undecided
+from symobs.tasks.analysis.page_parts import (
+    determinant_form,
+    formula_of_factored,
+    letters_apart_from_data,
+    stratum_of,
+    undecided,
+)
 from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_design import GainDesign
 from symobs.tasks.design.gain.gain_kind import AlgebraicGain
@@ -83,7 +89,7 @@ def _write_structured(page: Builder, design: GainDesign, side: PlacementProblem)
         return False
     gain = page.define(side.gain, gain_letters(page, side.gain, value, _is_zero), say="structured_gain")
     closed = side.closed_loop_matrix(page)
-    page.equal(relation(closed, spread(page, closed.value)))
+    page.equal(relation(closed, letters_apart_from_data(page, closed.value)))
     factors = Factored(Scalar.of(1), tuple(parts))
     page.equal(
         relation(side.error_determinant(page), page.term(formula_of_factored(factors))), say="polynomial_of_unknown"

@@ -13,7 +13,8 @@ from symobs.formula.tree.written import stacked
 from symobs.proof.derivation import CaseStep
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.proof.derivation.facts import PREDICATES
-from symobs.proof.derivation.wording_check import Said, rests
+from symobs.proof.derivation.sentence_context import SentenceContext
+from symobs.proof.derivation.wording_check import meets_obligations
 from symobs.stability.criteria.stability import stability
 from symobs.system.specification import DesiredPolynomial
 from symobs.tasks.analysis.page_parts import (
@@ -21,8 +22,8 @@ from symobs.tasks.analysis.page_parts import (
     factored_form,
     formula_of_factored,
     hidden_polynomial,
+    redefined_letters,
     say_stability,
-    set_anew,
     stratum_of,
     undecided,
 )
@@ -151,7 +152,7 @@ def _test(page: Builder, design: GainDesign, side: PlacementProblem, style: str)
         define_test_matrix(page, side)
         is_known = square_test(page, side.matrix, design.test, side.test)
     else:
-        is_known = rests(f"assignable_{side.kind}", Said((), page.environment))
+        is_known = meets_obligations(f"assignable_{side.kind}", SentenceContext((), page.environment))
     if is_known and design.fixed_polynomial.is_one and design.answer[side.gain] is not None:
         page.conclude(f"assignable_{side.kind}")
 
@@ -309,7 +310,7 @@ def write_case(page: Builder, case: Case, side: PlacementProblem, around: tuple[
             write_case(page, inner, side, (*around, case))
     finally:
         steps, page.steps, page.environment = page.steps, outer, environment
-    anew = set_anew(here, inside)
+    anew = redefined_letters(here, inside)
     page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(steps), anew=anew))
 
 
@@ -333,7 +334,7 @@ def _on_stratum(page: Builder, cases: tuple[Case, ...], result: GainDesign, side
     )
     steps = outside_cases(page, result, page.steps) or [undecided(page, cases[-1])]
     if steps != page.steps:  # a gain that is defined there is none of the further cases
-        anew = set_anew(before, page.environment)
+        anew = redefined_letters(before, page.environment)
         page.environment = before
         steps = [replace(step, anew=anew) if isinstance(step, CaseStep) else step for step in steps]
     page.steps = steps

@@ -20,7 +20,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation.builder import Builder, predicate
-from symobs.system.specification import desired_polynomial, over_common_data, read_gain, reject_both
+from symobs.system.specification import desired_polynomial, in_common_field, read_gain, reject_both
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import factored_form, given
 from symobs.tasks.analysis.stability_region.margins import NotRational, gains_of, margins_of, numbers
@@ -364,7 +364,7 @@ def _design(plant: StateSpace, asked: Mapping[str, Any], observer: str) -> Resul
         return kind.of_given(plant, read_gain(gain, plant, kind.letter, shape))
     desired = desired_polynomial(plant, asked[names[0]], asked[names[1]], names=names)
     assert desired is not None  # noqa: S101 - required
-    plant, (desired,) = over_common_data(plant, desired)
+    plant, (desired,) = in_common_field(plant, desired)
     return design_of(kind, plant, desired)
 
 

@@ -38,7 +38,7 @@ from symobs.proof.certificate.pointwise import never_together_zero
 from symobs.proof.derivation.facts import leading_minors
 from symobs.stability.criteria.stability import essential, monic, on_boundary, stability
 from symobs.system.conditions import Condition, joined, nonzero, real_consequences, sign_of, vanishing_factors
-from symobs.system.specification import over_common_data, read_symmetric
+from symobs.system.specification import in_common_field, read_symmetric
 from symobs.tasks.analysis.modes.modes import polynomial_of
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stable_factors, with_signs
@@ -447,7 +447,7 @@ def design_optimal(
     if plant.order > MOST_STATES:
         raise Undecided(f"{kind.task} is undecided: {plant.order} states are too many")
     read = [read_symmetric(value, plant, name, size) for name, (value, size) in given.items()]
-    plant, found = over_common_data(plant, *read, *further.values())
+    plant, found = in_common_field(plant, *read, *further.values())
     weights = dict(zip((*given, *further), found, strict=True))
     symbols, signs = plant.symbols, _needed_signs(weights, plant.symbols.signs)
     plant = plant.with_symbols(replace(symbols, signs={**symbols.signs, **signs})) if signs else plant

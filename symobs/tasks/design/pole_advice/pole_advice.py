@@ -24,11 +24,11 @@ from symobs.tasks.analysis.page_parts import (
     factored_form,
     formula_of_factored,
     given,
-    hidden,
     hidden_polynomial,
-    set_anew,
+    redefined_letters,
     stratum_of,
     undecided,
+    unobservable_relations,
 )
 from symobs.tasks.design.pole_advice.advised_poles import (
     FURTHER_LEFT,
@@ -223,7 +223,7 @@ def _cases(page: Builder, advice: PoleAdvice) -> Iterator[Step]:
         inner.environment = page.environment.extended_by(values=matrices)
         _advice(inner, found)
         inner.steps += _cases(inner, found)
-        anew, steps = set_anew(page.environment, inner.environment), tuple(inner.steps)
+        anew, steps = redefined_letters(page.environment, inner.environment), tuple(inner.steps)
         conditions = case.when
         if conditions[0].operator != ">":
             yield CaseStep(stratum_of(case), tuple(case.substitution.items()), steps, anew=anew)
@@ -361,7 +361,9 @@ def _caution(page: Builder, advice: PoleAdvice, warning: PoleWarning) -> None:
         page.set("N", advice.pair.kernel)
         page.set("X", advice.pair.restricted)
         unseen = hidden_polynomial(page)
-        page.caution(warning.key, *hidden(page, True), polynomial=relation(unseen, advice.missed))  # noqa: FBT003
+        page.caution(
+            warning.key, *unobservable_relations(page, is_observer=True), polynomial=relation(unseen, advice.missed)
+        )
     elif warning.key == "huge_gain":
         page.caution(warning.key, limit=str(slots["limit"]))
     elif "pole" in slots:

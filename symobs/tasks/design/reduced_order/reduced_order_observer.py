@@ -23,7 +23,7 @@ from symobs.system.specification import (
     Poles,
     PolynomialText,
     desired_polynomial,
-    over_common_data,
+    in_common_field,
     read_gain,
 )
 from symobs.tasks.analysis.strata.strata import equations_of, places, solved
@@ -271,7 +271,7 @@ class ReducedOrderObserver(Result):
 
         def solve(plant: StateSpace, values: dict[str, Scalar]) -> Result:
             wanted = self.desired.substitute(values), self.answer["T"].substitute(values)
-            there, (desired, T) = over_common_data(plant, *wanted)
+            there, (desired, T) = in_common_field(plant, *wanted)
             return reduced_observer_of(there, desired, T, self.method)
 
         return solved(self.plant, self.places, solve)
@@ -406,7 +406,7 @@ def reduced_order_observer(
         raise InputError(message, where="plant.C", repair="use x = C⁻¹ (y − D u)")
     desired = desired_polynomial(plant, poles, polynomial, degree=unmeasured(plant))
     assert desired is not None  # noqa: S101 - required
-    plant, (desired,) = over_common_data(plant, desired)
+    plant, (desired,) = in_common_field(plant, desired)
     coordinates = completed(plant.matrices.C) if T is None else _read_coordinates(T, plant)
     return choose("reduced_order_observer", method, "partition").solve(plant, desired, coordinates).asked(method)
 

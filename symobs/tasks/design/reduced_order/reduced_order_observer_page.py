@@ -8,7 +8,7 @@ from symobs.exact import Factored, Matrix, Scalar, roots_of
 from symobs.formula.tree import Roots
 from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation.builder import Builder, predicate, relation
-from symobs.proof.derivation.wording_check import fits
+from symobs.proof.derivation.wording_check import relation_fits
 from symobs.stability.criteria.stability import stability
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import case_steps, formula_of_factored, given, in_blocks
@@ -213,7 +213,9 @@ def _parts(page: Builder, design: ReducedOrderObserver) -> None:
         row, order = page["A_12"], page.plant.order - page.plant.outputs
         test = block([[row @ page["A_22"] ** k if k else row] for k in range(order)])
         found = relation(test.apply("rank"), order)
-        if fits("first_part_measures", found, page.environment):  # with parameters it may be so for generic ones only
+        if relation_fits(
+            "first_part_measures", found, page.environment
+        ):  # with parameters it may be so for generic ones only
             page.conclude("first_part_measures", rank=found)
 
 

@@ -23,7 +23,7 @@ from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.stability.criteria.stability import stability
 from symobs.system import StateSpace
 from symobs.system.conditions import joined, nonzero, vanishing_factors
-from symobs.system.specification import DesiredPolynomial, desired_polynomial, over_common_data
+from symobs.system.specification import DesiredPolynomial, desired_polynomial, in_common_field
 from symobs.tasks.analysis.page_parts import case_steps, given, say_stability
 from symobs.tasks.analysis.strata.loci import distance_from, loci
 from symobs.tasks.analysis.strata.rank_stratification import maximal_minors
@@ -287,7 +287,7 @@ def integral_action(
     plant.require("B", "C", task="integral_action")
     desired = desired_polynomial(plant, poles, polynomial, degree=extended_order(plant))
     assert desired is not None  # noqa: S101 - required
-    plant, (desired,) = over_common_data(plant, desired)
+    plant, (desired,) = in_common_field(plant, desired)
     found: Result = choose("integral_action", method, "extended_state").solve(plant, desired)
     return found.asked(method)
 

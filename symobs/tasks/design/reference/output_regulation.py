@@ -33,7 +33,7 @@ from symobs.ground.errors import CertificateRejected, InputError, Undecided
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.stability.criteria.stability import stability
 from symobs.system.conditions import Condition, vanishing_factors
-from symobs.system.specification import desired_polynomial, over_common_data, read_gain, reject_both
+from symobs.system.specification import desired_polynomial, in_common_field, read_gain, reject_both
 from symobs.tasks.analysis.page_parts import case_steps, given
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design.compensator.compensator import KnownState
@@ -537,7 +537,7 @@ def output_regulation(
     entries, letters = exogenous.order * (plant.order + plant.inputs), plant.field.names
     if entries > (_MOST_WITH_PARAMETERS if letters else _MOST_ENTRIES):
         raise Undecided(f"output_regulation is undecided: {entries} unknown entries are too many")
-    plant, (asked, desired, *parts) = over_common_data(plant, asked, desired, *exogenous)
+    plant, (asked, desired, *parts) = in_common_field(plant, asked, desired, *exogenous)
     loop = KnownState.design(plant, (asked,), "state_feedback")
     found: Result = choose("output_regulation", method, "regulator_equations").solve(Exogenous(*parts), loop, desired)
     return found.asked(method)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from symobs.exact import Matrix, Scalar, roots_of
 from symobs.exact.core.generators import function
 from symobs.formula.tree import Apply, Environment, Letter, Literal, Power, Predicate, Product, Relation, Roots, Sum
-from symobs.proof.derivation.wording_check import Said
-from symobs.proof.derivation.wording_check import rests as rests_on
+from symobs.proof.derivation.sentence_context import SentenceContext
+from symobs.proof.derivation.wording_check import meets_obligations as rests_on
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from symobs.formula.tree import Fact, Formula
 
 
-def rests(key: str, facts: Sequence[Fact], here: Environment) -> bool:
-    return rests_on(key, Said(facts, here))
+def meets_obligations(key: str, facts: Sequence[Fact], here: Environment) -> bool:
+    return rests_on(key, SentenceContext(facts, here))
 
 
 E = Environment(
@@ -55,7 +55,9 @@ def test_a_pole_is_defective_where_it_has_fewer_eigenvectors_than_places() -> No
     def defective(facts: list[Fact], known: Environment = here, **other: Scalar) -> bool:
         mode = function("exp", -2 * t)
         slots = {"mode": mode, "times": t * mode, **other}
-        return rests_on("defective", Said(facts, known, {name: Literal(value) for name, value in slots.items()}))
+        return rests_on(
+            "defective", SentenceContext(facts, known, {name: Literal(value) for name, value in slots.items()})
+        )
 
     t = Scalar.symbol("t")
     assert held("M", s + 2)
@@ -80,7 +82,7 @@ def test_a_pair_has_the_damping_ratio_and_the_frequency_told() -> None:
 
     def told(damping: Formula, speed: Formula, said: Formula) -> bool:
         slots = {"damping": damping, "frequency": speed, "pair": Relation((phi, said), ("=",))}
-        return rests_on("pattern_damping", Said([], E, slots))
+        return rests_on("pattern_damping", SentenceContext([], E, slots))
 
     assert told(ratio, frequency, pair)
     assert told(ratio, frequency, Product((pair, Sum((s, two)))))
@@ -94,7 +96,7 @@ def test_shared_roots_are_roots_of_both_polynomials() -> None:
     here = Environment(values={"A": Matrix.of([[-1, 0], [0, -2]]), "phi_o": (s + 1) * (s + 3)})
 
     def shared(polynomial: Scalar) -> bool:
-        return rests("spectra_meet_observer", [Roots(Literal(polynomial), roots_of(polynomial, "s"))], here)
+        return meets_obligations("spectra_meet_observer", [Roots(Literal(polynomial), roots_of(polynomial, "s"))], here)
 
     assert shared(s + 1)
     assert not any(map(shared, (s + 2, s + 3, (s + 1) ** 2)))
@@ -106,25 +108,25 @@ def test_a_loop_is_stable_where_both_its_polynomials_are() -> None:
     whole = Product((Letter("phi_c"), Letter("phi_o")))
     for key in ("compensator_unstable_alone", "compensator_unstable_low_alone", "minimal_unstable_alone"):
         own = Predicate("unstable", Letter("F"))
-        assert rests(key, [own, Predicate("stable", whole)], here)
-        assert not rests(key, [Predicate("unstable", whole), Predicate("stable", whole)], here)
+        assert meets_obligations(key, [own, Predicate("stable", whole)], here)
+        assert not meets_obligations(key, [Predicate("unstable", whole), Predicate("stable", whole)], here)
         for fact in (
             Predicate("stable", Letter("phi_c")),
             Predicate("stable", Letter("phi_o")),
             Predicate("unstable", whole),
             Predicate("stable", Product((Letter("phi_c"), Letter("phi_c")))),
         ):
-            assert not rests(key, [own, fact], here)
-        assert not rests(key, [], here)
-        assert not rests(key, [compared("O", "=", 1)], here)
-        assert not rests(key, [Predicate("stable", Letter("phi_c"))], Environment(values={"phi_c": s + 2}))
-        assert not rests(key, [Predicate("stable", Letter("phi_o"))], Environment(values={"phi_o": s + 2}))
+            assert not meets_obligations(key, [own, fact], here)
+        assert not meets_obligations(key, [], here)
+        assert not meets_obligations(key, [compared("O", "=", 1)], here)
+        assert not meets_obligations(key, [Predicate("stable", Letter("phi_c"))], Environment(values={"phi_c": s + 2}))
+        assert not meets_obligations(key, [Predicate("stable", Letter("phi_o"))], Environment(values={"phi_o": s + 2}))
 
 
 def test_a_zero_is_named_only_beside_a_full_rank() -> None:
     here = E.extended_by(values={"w_0": Matrix.row([0, 1]), "G_0": Matrix.of([[1], [0]])})
-    assert rests("no_feedforward_zero", [FULL], here)
+    assert meets_obligations("no_feedforward_zero", [FULL], here)
     for facts in ([LOW], []):
-        assert not rests("no_feedforward_zero", facts, here)
+        assert not meets_obligations("no_feedforward_zero", facts, here)
     for name, value in (("w_0", [0, 0]), ("w_0", [1, 0])):
-        assert not rests("no_feedforward_zero", [FULL], here.extended_by(values={name: Matrix.row(value)}))
+        assert not meets_obligations("no_feedforward_zero", [FULL], here.extended_by(values={name: Matrix.row(value)}))

@@ -26,8 +26,10 @@ from symobs.formula.tree import (
     Sum,
 )
 from symobs.ground.errors import DerivationRejected
-from symobs.proof.derivation.wording_check import Said, _one_higher, fits
-from symobs.proof.derivation.wording_check import rests as rests_on
+from symobs.proof.derivation.sentence_context import SentenceContext
+from symobs.proof.derivation.wording_check import meets_obligations as rests_on
+from symobs.proof.derivation.wording_check import relation_fits
+from symobs.proof.derivation.wording_of_polynomials import one_higher
 from tests.kit import SERVO, tabled, tables
 from tests.support.problems.steps import said
 from tests.support.tampering.mutations import lines_of
@@ -36,8 +38,8 @@ if TYPE_CHECKING:
     from symobs.proof.derivation import Derivation
 
 
-def rests(key: str, facts: tuple[Any, ...], here: Environment) -> bool:
-    return rests_on(key, Said(facts, here))
+def meets_obligations(key: str, facts: tuple[Any, ...], here: Environment) -> bool:
+    return rests_on(key, SentenceContext(facts, here))
 
 
 #: Two rows of rank 1, and three rows of rank 2.
@@ -74,18 +76,18 @@ SAID_OF_LOWER = ["disturbance_blocked_origin", "disturbance_blocked_one"]
 
 @pytest.mark.parametrize("key", SAID_OF_FULL)
 def test_a_full_rank_is_said_to_be_full(key: str) -> None:
-    assert fits(key, FULL, HERE) is True
-    assert fits(key, rank(HIGH, Matrix.of([[2]])), HERE) is True
+    assert relation_fits(key, FULL, HERE) is True
+    assert relation_fits(key, rank(HIGH, Matrix.of([[2]])), HERE) is True
     for other in (*LOWER, *BESIDE):
-        assert fits(key, other, HERE) is False
+        assert relation_fits(key, other, HERE) is False
 
 
 @pytest.mark.parametrize("key", SAID_OF_LOWER)
 def test_a_lower_rank_is_said_to_be_lower(key: str) -> None:
     for lower in LOWER:
-        assert fits(key, lower, HERE) is True
+        assert relation_fits(key, lower, HERE) is True
     for other in (FULL, *BESIDE):
-        assert fits(key, other, HERE) is False
+        assert relation_fits(key, other, HERE) is False
 
 
 def pair(of: str, A: Matrix, row: list[Any], *more: Any) -> tuple[Relation, Environment]:
@@ -103,26 +105,26 @@ def test_a_rank_that_is_said_of_a_pair_is_that_of_its_own_test_matrix(of: str) -
     full, here = pair(of, Matrix.of([[0, 1], [0, 0]]), [1, 0], 2)
     falling, there = pair(of, I * 2, [1, 0], "<", 2)
     exceptional, somewhere = pair(of, Matrix.of([[0, 1], [0, 0]]), [h, 0], 2)  # not at h = 0
-    assert not fits(f"full_rank_{of}", exceptional, somewhere)
-    assert fits(f"generic_rank_{of}", exceptional, somewhere)
+    assert not relation_fits(f"full_rank_{of}", exceptional, somewhere)
+    assert relation_fits(f"generic_rank_{of}", exceptional, somewhere)
     for key in (f"full_rank_{of}", f"generic_rank_{of}"):
-        assert fits(key, full, here)
-        assert not fits(key, full, HERE)
-        assert not fits(key, rank(Literal(I * 2), 2), here)  # the rank of another matrix
+        assert relation_fits(key, full, here)
+        assert not relation_fits(key, full, HERE)
+        assert not relation_fits(key, rank(Literal(I * 2), 2), here)  # the rank of another matrix
     gain = "observer" if of == "observability" else "state_feedback"
     for key in (f"yes_{of}", f"pbh_yes_{of}", f"no_fixed_modes_{of}", f"assignable_{gain}", f"any_{gain}"):
-        assert rests(key, (), here)
-        assert not any(rests(key, (full,), e) for e in (there, somewhere, HERE))
-    assert rests(f"pbh_no_{of}", (), there)
-    assert not rests(f"pbh_no_{of}", (falling,), here)
+        assert meets_obligations(key, (), here)
+        assert not any(meets_obligations(key, (full,), e) for e in (there, somewhere, HERE))
+    assert meets_obligations(f"pbh_no_{of}", (), there)
+    assert not meets_obligations(f"pbh_no_{of}", (falling,), here)
     low, generic = f"no_{of}", f"generic_low_{of}"
     for A, row in ((I * 2, [1, h]), (I * h, [h, 1])):  # of rank 1 for all h
-        assert fits(low, *pair(of, A, row, "<", 2))
-        assert not fits(low, pair(of, A, row, "<", 2)[0], here)
+        assert relation_fits(low, *pair(of, A, row, "<", 2))
+        assert not relation_fits(low, pair(of, A, row, "<", 2)[0], here)
     falls = pair(of, I * 0, [h, 0], "<", 2)  # of rank 0 at h = 0
-    assert not fits(low, *falls)
-    assert fits(generic, *falls)
-    assert not fits(generic, full, here)
+    assert not relation_fits(low, *falls)
+    assert relation_fits(generic, *falls)
+    assert not relation_fits(generic, full, here)
 
 
 def test_a_fact_about_one_matrix_is_not_carried_to_another_without_its_ground() -> None:
@@ -134,17 +136,23 @@ def test_a_fact_about_one_matrix_is_not_carried_to_another_without_its_ground() 
     data: dict[str, Any] = {"A": A, "C": C, "M": M, "W": W, "v": v}
     here = Environment(variable="z", values=data)
     flow = Environment(values=data | {"exp_At": A})
-    assert rests("finite_sum_is", (), here)
-    assert not rests("finite_sum_is", (), here.extended_by(values={"M": W}))
-    assert not rests("kernel_none", (), here)  # a sum of two powers is neither an integral nor over all time
-    assert not rests("kernel_shared", (), here)
-    assert rests("kernel_shared", (), flow)
-    assert not rests("kernel_shared", (), flow.extended_by(values={"M": W}))
-    assert rests("steps_kernel_observability", (), here)
-    assert not rests("steps_kernel_observability", (), here.extended_by(values={"v": Matrix.column([0, 1, 0])}))
-    assert not rests("steps_kernel_observability", (), here.extended_by(values={"W": W * 0}))  # more than v is in it
-    assert not rests("steps_nonsingular_observability", (), here)
-    assert rests("steps_nonsingular_observability", (), here.extended_by(values={"W": Matrix.identity(3)}))
+    assert meets_obligations("finite_sum_is", (), here)
+    assert not meets_obligations("finite_sum_is", (), here.extended_by(values={"M": W}))
+    assert not meets_obligations(
+        "kernel_none", (), here
+    )  # a sum of two powers is neither an integral nor over all time
+    assert not meets_obligations("kernel_shared", (), here)
+    assert meets_obligations("kernel_shared", (), flow)
+    assert not meets_obligations("kernel_shared", (), flow.extended_by(values={"M": W}))
+    assert meets_obligations("steps_kernel_observability", (), here)
+    assert not meets_obligations(
+        "steps_kernel_observability", (), here.extended_by(values={"v": Matrix.column([0, 1, 0])})
+    )
+    assert not meets_obligations(
+        "steps_kernel_observability", (), here.extended_by(values={"W": W * 0})
+    )  # more than v is in it
+    assert not meets_obligations("steps_nonsingular_observability", (), here)
+    assert meets_obligations("steps_nonsingular_observability", (), here.extended_by(values={"W": Matrix.identity(3)}))
 
 
 # -- exponentials ---------------------------------------------------------------------------------------------------------
@@ -159,21 +167,21 @@ EXPONENTS = {
 
 @pytest.mark.parametrize("key", EXPONENTS)
 def test_an_exponential_is_that_of_the_letters(key: str) -> None:
-    assert fits(key, said(function("exp", EXPONENTS[key]), "<", 1), POLES) is True
+    assert relation_fits(key, said(function("exp", EXPONENTS[key]), "<", 1), POLES) is True
     for other in (*{*EXPONENTS.values()} - {EXPONENTS[key]}, -EXPONENTS[key], Scalar.of(-1)):
-        assert fits(key, said(function("exp", other), "<", 1), POLES) is False
-    assert fits(key, said(0, "<", 1), POLES) is False
+        assert relation_fits(key, said(function("exp", other), "<", 1), POLES) is False
+    assert relation_fits(key, said(0, "<", 1), POLES) is False
 
 
 @tabled
 def test_the_third_digit_is_one_higher(value: str, higher: str) -> None:
-    assert _one_higher(Fraction(value)) == Fraction(higher)
+    assert one_higher(Fraction(value)) == Fraction(higher)
 
 
 @pytest.mark.parametrize("value", ["0", "-1"])
 def test_only_what_is_positive_has_a_third_digit(value: str) -> None:
     with pytest.raises(ValueError, match=value):
-        _one_higher(Fraction(value))
+        one_higher(Fraction(value))
 
 
 # -- facts ------------------------------------------------------------------------------------------------------------------
@@ -197,15 +205,15 @@ def test_a_verdict_rests_on_the_unobservable_modes(verdict: str, of: str) -> Non
         pencil = Sum((Product((Letter("s"), Identity(1))), Negative(Letter("X"))))
         own = [Predicate(name, Apply("det", pencil)) for name in ("stable", "unstable")]
         other = [property_of(name) for name in ("stable", "unstable", "marginal", "beyond")]
-        assert rests(yes, (own[0],), here)  # that it is stable is a fact of the step
-        assert rests(no, (own[1],), here)
+        assert meets_obligations(yes, (own[0],), here)  # that it is stable is a fact of the step
+        assert meets_obligations(no, (own[1],), here)
         for facts in ((), NOTHING, *((fact,) for fact in other)):
-            assert not rests(yes, facts, here)
-            assert not rests(no, facts, here)
+            assert not meets_obligations(yes, facts, here)
+            assert not meets_obligations(no, facts, here)
         for lie in ({"N": Matrix.column([0, 1])}, {"X": X * 2}, {"N": Matrix.zeros(2, 0), "X": Matrix.zeros(0, 0)}):
-            assert not rests(yes, (own[0],), here.extended_by(values=lie))
-    assert rests(yes, (), pair(of, Matrix.of([[0, 1], [0, 0]]), [1, 0], 2)[1])
-    assert not rests(yes, (STABLE,), pair(of, Matrix.identity(2), [1, 0], 2)[1])
+            assert not meets_obligations(yes, (own[0],), here.extended_by(values=lie))
+    assert meets_obligations(yes, (), pair(of, Matrix.of([[0, 1], [0, 0]]), [1, 0], 2)[1])
+    assert not meets_obligations(yes, (STABLE,), pair(of, Matrix.identity(2), [1, 0], 2)[1])
 
 
 @tabled
@@ -284,11 +292,11 @@ def test_gains_are_as_many_as_the_sentence_says() -> None:
     unseen = Environment(values={"A": A * 0, "C": one})
     for here, count in ((seen[two], 2), (seen[one], 0), (unseen, 1)):
         for told in range(4):
-            said_of = Said((), here, {"count": str(told)})
+            said_of = SentenceContext((), here, {"count": str(told)})
             assert rests_on("dimension_observer", said_of) is (told == count)
-        assert rests("family_observer", (), here) is (count > 0)
-    assert rests("row_reduced_unique_observer", (), seen[one])
-    assert not rests("row_reduced_unique_observer", (), seen[two])
+        assert meets_obligations("family_observer", (), here) is (count > 0)
+    assert meets_obligations("row_reduced_unique_observer", (), seen[one])
+    assert not meets_obligations("row_reduced_unique_observer", (), seen[two])
 
 
 def test_a_pattern_of_zeros_has_no_gain_only_where_the_coefficients_say_so() -> None:
@@ -301,7 +309,7 @@ def test_a_pattern_of_zeros_has_no_gain_only_where_the_coefficients_say_so() -> 
 
     def held(places: str, e: Environment = here, **when: Any) -> bool:
         return rests_on(
-            "impossible_zero_unless" if when else "impossible_zero", Said((), e, {"places": places, **when})
+            "impossible_zero_unless" if when else "impossible_zero", SentenceContext((), e, {"places": places, **when})
         )
 
     assert held("(2, 1)")
