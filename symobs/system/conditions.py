@@ -31,6 +31,8 @@ FACTORED_UP_TO = 1_500
 
 #: A polynomial with more terms than these is not looked at letter by letter, nor is its discriminant computed.
 _BY_LETTER_UP_TO, _BY_DISCRIMINANT_UP_TO, _DISCRIMINANT_OF_DEGREE = 60, 12, 6
+#: Nor is one in more letters: each is looked at beside all others.
+_BY_LETTERS = 5
 
 #: The side of 0 that a sign leaves to a parameter.
 _SIDE = {"positive": 1, "nonnegative": 1, "negative": -1, "nonpositive": -1}
@@ -227,7 +229,11 @@ def _sign_by_letters(factor: Scalar, declared: tuple[tuple[str, str], ...], know
     Nothing is found beside an eigenvalue, or a root of which nothing is known: they may be complex.
     """
     signs = dict(declared)
-    if EIGENVALUE in signs or any(function_named(name) and sign not in _KNOWN for name, sign in declared):
+    if (
+        EIGENVALUE in signs
+        or len(signs) > _BY_LETTERS
+        or any(function_named(name) and sign not in _KNOWN for name, sign in declared)
+    ):
         return known
     for name in factor.names:
         found = _sign_in_letter(factor.coefficients(name), name, signs)
@@ -263,10 +269,15 @@ def _sign_in_letter(coefficients: Sequence[Scalar], name: str, signs: Mapping[st
     positive wherever it stands, the value is not negative, and 0 at most where α = 0 and so β = 0, as γ.
     """
     total, degree = "zero", len(coefficients) - 1
-    for power, coefficient in zip(range(degree, -1, -1), coefficients, strict=True):
-        if not coefficient.is_zero:
-            part = sign_of(coefficient, signs)
-            total = _sum_sign(total, _product_sign(part, _power_sign(signs[name], power)) if power else part)
+    there = [(degree - place, c) for place, c in enumerate(coefficients) if not c.is_zero]
+    by_power = {power: _power_sign(signs[name], power) for power, _ in there if power}
+    if by_power and not _KNOWN.issuperset(by_power.values()):  # an odd power of a letter of any sign
+        total = "real"
+    for power, coefficient in there if total != "real" else ():
+        part = sign_of(coefficient, signs)
+        total = _sum_sign(total, _product_sign(part, by_power[power]) if power else part)
+        if total == "real":
+            break
     if total != "real" or degree % 2:
         return total
     lead, middle, last = coefficients[0], coefficients[degree // 2], coefficients[-1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import re
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,9 @@ from typing import Any
 import pytest
 
 import symobs
-from symobs.ground.errors import SymobsError
+from symobs.ground.errors import DerivationRejected, SymobsError
 from symobs.problem.validation import validate
+from symobs.proof.derivation import CaseStep, Section
 from symobs.tasks.result import tasks
 from symobs.tasks.result.writers import render
 from tests.kit import tables
@@ -36,6 +38,19 @@ def test_an_answer_found_at_the_edges(
     found = validate(problem)
     page = render(found.document(found.solve()), "text")
     assert re.search(words, str(page)), page
+
+
+def test_a_page_without_the_cases_it_promises_is_rejected() -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", C="[a 0]", symbols={"a": "real"})
+    written = symobs.observability(plant).derivation
+    assert written.check()
+
+    def without_cases(steps: tuple[Any, ...]) -> tuple[Any, ...]:
+        kept = (step for step in steps if not isinstance(step, CaseStep))
+        return tuple(replace(s, steps=without_cases(s.steps)) if isinstance(s, Section) else s for s in kept)
+
+    with pytest.raises(DerivationRejected, match="promises cases that do not follow"):
+        replace(written, steps=without_cases(written.steps)).check()
 
 
 @pytest.mark.slow

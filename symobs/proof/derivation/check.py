@@ -104,14 +104,15 @@ class Derivation:
         """Verify every line; return the final environment.  Raises `DerivationRejected`."""
         known: Environment | None = self.__dict__.get("_checked")
         if known is None:
-            known = _walk(self.steps, self.start, self.discrete)
+            known = after_all(self.steps, self.start, self.discrete)
             if (broken := _broken_promise(self.steps)) is not None:
                 reject(f"{broken}, which promises cases that do not follow,")
             object.__setattr__(self, "_checked", known)
         return known
 
 
-def _walk(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
+def after_all(steps: tuple[Step, ...], environment: Environment, discrete: bool) -> Environment:  # noqa: FBT001
+    """Verify steps one after the other and return the environment after them."""
     for step in steps:
         try:
             environment = after(step, environment, discrete)
@@ -186,11 +187,11 @@ def after(step: Step, environment: Environment, discrete: bool) -> Environment: 
         case Plot(picture, subject):
             _drawn(picture, subject, environment, discrete)
         case CaseStep(steps=inside):
-            _walk(inside, inside_case(step, environment), discrete)
+            after_all(inside, inside_case(step, environment), discrete)
         case Section(title, inside):
             _sentence(title, environment, discrete)
             _owed(title, step, environment)
-            environment = _walk(inside, environment, discrete)
+            environment = after_all(inside, environment, discrete)
         case _:
             assert_never(step)
     sentence = getattr(step, "sentence", None)

@@ -17,6 +17,7 @@ from symobs.exact.core.generators import symbols_in
 from symobs.formula.figures import TimeResponse
 from symobs.ground.errors import CertificateRejected, DerivationRejected
 from symobs.proof.derivation import Plot
+from symobs.proof.derivation.check import after_all
 from symobs.stability.inequalities.proof import Combined, Opposite
 from symobs.tasks.analysis.rank.observability import RankResult
 from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
@@ -47,6 +48,7 @@ from tests.support.tools.remembered import remembered
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from symobs.formula.tree import Environment
     from symobs.proof.derivation import Derivation
     from symobs.tasks.design.pole_placement.single_output import ObserverPair
     from symobs.tasks.result import Result
@@ -346,13 +348,18 @@ def _try_line(line: Line, where: str, some: Sequence[Change], count: Count) -> N
 
 def _check(line: Line, alone: Derivation) -> None:
     """Check a changed line, and what follows where something else is established by it: else it is as it was."""
-    after = alone.check()
+    after = _walked(alone)
     if after != line.after:
-        line.followed(after).check()
+        _walked(line.followed(after))
+
+
+def _walked(derivation: Derivation) -> Environment:
+    """Check lines by themselves; that the cases follow which they promise is a matter of the whole page."""
+    return after_all(derivation.steps, derivation.start, derivation.discrete)
 
 
 def _is_true(line: Line, alone: Derivation, meant: Derivation, rest: Derivation) -> bool:
     """Tell whether a changed line is true, and what follows where something else is established by it."""
-    if alone.check() == line.after:
+    if _walked(alone) == line.after:
         return still_true(alone, meant)
     return still_true(line.told(*alone.steps), rest)

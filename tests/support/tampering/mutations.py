@@ -32,6 +32,7 @@ from symobs.formula.tree import (
     Transpose,
 )
 from symobs.proof.derivation import Derivation, Section, Sentence
+from symobs.proof.derivation.check import after
 from symobs.stability.criteria.routh_table import ORIGINS, RouthRow, RouthTable
 from symobs.stability.regions.region import RegionInequality
 from tests.kit import tables
@@ -305,9 +306,9 @@ def lines_of(derivation: Derivation) -> list[Line]:
     steps = list(_opened(derivation.steps))
     lines, start = [], derivation.start
     for index, step in enumerate(steps):
-        after = replace(derivation, steps=(step,), start=start).check()
-        lines.append(Line(derivation, start, step, after, tuple(steps[index + 1 :])))
-        start = after
+        known = after(step, start, derivation.discrete)
+        lines.append(Line(derivation, start, step, known, tuple(steps[index + 1 :])))
+        start = known
     return lines
 
 

@@ -77,7 +77,8 @@ def _set_weights(page: Builder, result: OptimalGain) -> None:
     """Give the weights, or the intensities of the noise, their letters."""
     letters = _LETTERS if result.letter == "K" else {**_LETTERS, "N": "N_n"}
     for name, value in result.weights.items():
-        page.set(letters[name], value)
+        if letters[name] != "N_n" or not value.is_zero:
+            page.set(letters[name], value)
     if result.letter == "L":
         page.set("N_x", result.regulator.N)
         page.set("Q_x", result.regulator.Q)
