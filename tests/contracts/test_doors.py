@@ -43,7 +43,7 @@ def test_an_answer_found_at_the_edges(
 def test_a_page_without_the_cases_it_promises_is_rejected() -> None:
     plant = symobs.StateSpace("[0 1; 0 0]", C="[a 0]", symbols={"a": "real"})
     written = symobs.observability(plant).derivation
-    assert written.check()
+    written.check()
 
     def without_cases(steps: tuple[Any, ...]) -> tuple[Any, ...]:
         kept = (step for step in steps if not isinstance(step, CaseStep))

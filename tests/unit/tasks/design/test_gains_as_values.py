@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-import control
+import control  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_are, solve_discrete_are  # type: ignore[import-untyped]
@@ -21,8 +21,8 @@ PLANTS = {
 
 
 def arrays(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    A, B, C, _ = PLANTS[name]
-    A, B, C = (np.array([[float(e) for e in row.split()] for row in text.strip("[]").split(";")]) for text in (A, B, C))
+    texts = (str(text) for text in PLANTS[name][:3])
+    A, B, C = (np.array([[float(e) for e in row.split()] for row in text.strip("[]").split(";")]) for text in texts)
     return A, B, C
 
 
