@@ -8,7 +8,8 @@ dropped.  Only where each that is left has a point at which it alone fails is th
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import product
+from fractions import Fraction
+from itertools import combinations, product
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.exact import Scalar, product_of
@@ -34,7 +35,7 @@ from symobs.stability.inequalities.sample_points import (
     point_where_zero,
     respects,
 )
-from symobs.stability.inequalities.z3_backend import Resources, point_by_z3
+from symobs.stability.inequalities.z3_backend import Resources, names_of, point_by_z3
 from symobs.system.conditions import FACTORED_UP_TO, sign_of, sign_where
 
 if TYPE_CHECKING:
@@ -326,9 +327,27 @@ def failing_alone(value: Scalar, others: Sequence[Scalar], signs: Signs) -> Poin
     if sign_of(value, signs) in _DOWN:
         return find_point(others, signs, names=names)
     root = root_of_square(value)
-    if root is None:
-        return find_point((*others, -value), signs, names=names)
-    return point_where_zero(root, others, signs)
+    found = find_point((*others, -value), signs, names=names) if root is None else point_where_zero(root, others, signs)
+    return _point_at_an_end(value, others, signs) if found is None else found
+
+
+#: Of more letters that may be 0 not all choices are looked at.
+_ENDS = 4
+
+
+def _point_at_an_end(value: Scalar, others: Sequence[Scalar], signs: Signs) -> Point | None:
+    """Return a point where the others are positive and a value is not, at which letters are 0 whose signs end there."""
+    ends = sorted(name for name in value.names if signs.get(name) in {"nonnegative", "nonpositive"})
+    for count in range(1, len(ends) + 1) if len(ends) <= _ENDS else ():
+        for chosen in combinations(ends, count):
+            zeros = dict.fromkeys(chosen, ZERO)
+            left = tuple(other.substitute(zeros) for other in others)
+            if sign_of(value.substitute(zeros), signs) in _DOWN and not any(sign_of(v, signs) in _DOWN for v in left):
+                names = sorted(names_of((value, *others)) - zeros.keys())
+                point = find_point(tuple(v for v in left if not v.is_constant), signs, names=names)
+                if point is not None:
+                    return {**point, **dict.fromkeys(chosen, Fraction(0))}
+    return None
 
 
 def _asked(

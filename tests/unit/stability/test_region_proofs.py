@@ -276,3 +276,22 @@ def test_no_clock_and_no_program_decides_an_answer(folder: str) -> None:
             for alias in node.names
         }
         assert not imported & {"time", "datetime", "signal", "subprocess", "shutil", "os"}, path
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "sign", "needed"),
+    [
+        ("s + h1", "nonnegative", "h1 > 0"),
+        ("s^2 + h1*s + 1", "nonnegative", "h1 > 0"),
+        ("s + h1^2", "nonpositive", "h1 < 0"),
+        ("s - h1", "nonpositive", "h1 < 0"),
+        ("s^2 + (h1 + 1)*s + h1", "nonnegative", "h1 > 0"),
+    ],
+)
+def test_the_end_of_a_weak_sign_shows_that_a_condition_is_needed(
+    polynomial: str, sign: str, needed: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At h1 = 0, which the sign admits, each has a root at 0: so it is not stable everywhere, without another program."""
+    monkeypatch.setitem(sys.modules, "z3", None)
+    found = symobs.stability_region(polynomial=polynomial, parameters=["h1"], symbols={"h1": sign})
+    assert (found.verdict, found.stable_if) == ("conditional", (needed,))
