@@ -293,4 +293,4 @@ def test_no_clock_and_no_program_decides_an_answer(folder: str) -> None:
 def test_the_end_of_a_weak_sign_shows_that_a_condition_is_needed(polynomial: str, sign: str, needed: str) -> None:
     """At h1 = 0, which the sign admits, each has a root at 0: so it is not stable everywhere, without another program."""
     found = symobs.stability_region(polynomial=polynomial, parameters=["h1"], symbols={"h1": sign})
-    assert (found.verdict, found.stable_if) == ("conditional", (needed,))
+    assert (found.verdict, found.stable_if) == ("conditional", [needed])
