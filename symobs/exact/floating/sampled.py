@@ -159,7 +159,6 @@ class ArrayFunction:
         """Nest numerators and denominators; raises `InputError` where a coefficient has no double."""
         self.fractions = [(nested(value.numerator), nested(value.denominator)) for value in values]
         self.names = sorted({name for value in values for name in value.names})
-        self.has_functions = [any(function_named(name) is not None for name in value.names) for value in values]
 
     def __call__(self, points: Mapping[str, Any]) -> Any:
         """Return an array with one row for each value; `points` has flat arrays of one length by name."""
@@ -176,22 +175,6 @@ class ArrayFunction:
                     top = evaluated(above, here)
                     into[block] = top if below == 1.0 else top / evaluated(below, here)
         return found
-
-    def certain(self, points: Mapping[str, Any]) -> Any:
-        """Return at which points no sum with functions or roots in it is less than `_LOST` of the sum of its sizes."""
-        import numpy as np
-
-        kept = np.ones(max((len(array) for array in points.values()), default=1), dtype=bool)
-        mixed = [pair for pair, has in zip(self.fractions, self.has_functions, strict=True) if has]
-        known = {name: at_points(name, points) for name in self.names} if mixed else {}
-        with np.errstate(all="ignore"):
-            for polynomial in dict.fromkeys(part for pair in mixed for part in pair if isinstance(part, Nested)):
-                kept &= np.abs(evaluated(polynomial, known)) > _LOST * sizes(polynomial, known)
-        return kept
-
-
-#: A sum of doubles that is less than this share of the sizes of its terms may have fewer than nine certain digits.
-_LOST = 1e-6
 
 
 def at_points(name: str, points: Mapping[str, Any]) -> Any:

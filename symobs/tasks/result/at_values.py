@@ -280,11 +280,8 @@ def _fill(result: Any, fields: Mapping[str, Any], points: Mapping[str, Any], whe
         found = [entry for entry in entries if entry is not None]
         plain = not there or not any(entry.names for entry in found)
         if found:
-            chosen, function = where[left], None if plain else ArrayFunction(found)
-            numbers = [[nearest_double(entry)] for entry in found] if function is None else function(there)
-            values[np.ix_(known, chosen)] = numbers
-            if function is not None:  # where terms cancel the exact values are taken
-                opened.append(chosen[~function.certain(there)])
+            numbers = [[nearest_double(entry)] for entry in found] if plain else ArrayFunction(found)(there)
+            values[np.ix_(known, where[left])] = numbers
     return np.concatenate(opened)
 
 
