@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import symobs
 from symobs.exact import EIGENVALUE, Complex, Matrix, Scalar
 from symobs.exact.core.generators import NotWritten, substitute, symbols_in
-from symobs.exact.floating.sampled import ArrayFunction, at_points, evaluated, nearest_double, nested, shortest, sizes
+from symobs.exact.floating.rounding_errors import CertainFunction
+from symobs.exact.floating.sampled import at_points, evaluated, nearest_double, nested, shortest, sizes
 from symobs.formula.expression import parse_matrix, parse_polynomial
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError, together
@@ -280,7 +281,7 @@ def _fill(result: Any, fields: Mapping[str, Any], points: Mapping[str, Any], whe
         found = [entry for entry in entries if entry is not None]
         plain = not there or not any(entry.names for entry in found)
         if found:
-            numbers = [[nearest_double(entry)] for entry in found] if plain else ArrayFunction(found)(there)
+            numbers = [[nearest_double(entry)] for entry in found] if plain else CertainFunction(found)(there)
             values[np.ix_(known, where[left])] = numbers
     return np.concatenate(opened)
 
