@@ -8,6 +8,7 @@ uncertain is found in rational numbers, or in enclosures where functions occur.
 from __future__ import annotations
 
 from decimal import Decimal
+from sys import float_info
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from flint import arb, fmpq
@@ -42,6 +43,10 @@ if TYPE_CHECKING:
 #: A value is certain if its error, in units of 2⁻⁵³, is below this multiple of it: 2¹⁹⁻⁵³ is 6 · 10⁻¹¹. With fewer
 #: units many points beside the zeros of a polynomial are uncertain, each of which takes as long as a thousand others.
 _CERTAIN = 2.0**19
+#: Bits that are enough where terms cancel twice, as in e^(−k) − 1 + k, at the smallest double.
+_MOST_BITS = 8192
+#: The largest double.
+_LARGEST = arb(float_info.max)
 #: The functions with enclosures at a point; all others are sums over roots, which are rounded from enclosures.
 _ENCLOSED = {"sqrt", "exp", "cos", "sin", "cosh", "sinh"}
 
@@ -54,7 +59,9 @@ class CertainFunction(ArrayFunction):
         super().__init__(values)
         self.values = list(values)
         self.exact: dict[Scalar, tuple[_Terms, _Terms]] = {}
-        self.summed = [tuple(Summed.of(part) for part in fraction) for fraction in self.fractions]
+        places = {part: place for place, part in enumerate(dict.fromkeys(p for pair in self.fractions for p in pair))}
+        self.summed = [Summed.of(part) for part in places]
+        self.pairs = [(places[above], places[below]) for above, below in self.fractions]
 
     def __call__(self, points: Mapping[str, Any]) -> Any:
         """Return an array with one row for each value; `points` has flat arrays of one length by name."""
@@ -76,13 +83,18 @@ class CertainFunction(ArrayFunction):
 
         largest = {name: (np.max(np.abs(here[name])), np.max(errors[name])) for name in self.names}
         positive = {name for name in self.names if function_named(name) is None and np.min(here[name]) >= 0}
-        for value, fraction, summed, into in zip(self.values, self.fractions, self.summed, found, strict=True):
-            parts = [evaluated(polynomial, here) for polynomial in fraction]
-            into[:] = parts[0] if fraction[1] == 1.0 else parts[0] / parts[1]
+        parts = list[Any]([None] * len(self.summed))  # entries of one matrix share their denominator
+        for value, pair, into in zip(self.values, self.pairs, found, strict=True):
+            for place in pair:
+                if parts[place] is None:
+                    parts[place] = self.summed[place].at_block(here, errors, largest, positive, len(into))
+            (above, *doubtful), (below, *others) = (parts[place] for place in pair)
+            np.divide(above, below, out=into)
             uncertain = ~np.isfinite(into)
-            for part, number in zip(summed, parts, strict=True):
-                if part.safe is None or not part.safe <= positive:
-                    uncertain[part.uncertain(number, here, errors, largest, len(into))] = True
+            if not into.all():  # nor is 0 certain where the denominator is too large
+                uncertain |= (into == 0) & (above != 0)
+            for points_of_doubt in (*doubtful, *others):
+                uncertain[points_of_doubt] = True
             for index in np.flatnonzero(uncertain):
                 into[index] = self._certain(value, {name: array[index] for name, array in points.items()}, into[index])
 
@@ -134,6 +146,13 @@ class Summed(NamedTuple):
         safe = frozenset() if len(signs) < 2 else safe
         plain = all(function_named(name) is None for name in names)
         return cls(polynomial, frozenset(names), safe if plain else None, _operations(polynomial) if plain else 0)
+
+    def at_block(self, here: Any, errors: Any, largest: Any, positive: set[str], count: int) -> tuple[Any, ...]:
+        """Return the values at a block of points, and the points where they are uncertain if there may be any."""
+        value = evaluated(self.polynomial, here)
+        if self.safe is not None and self.safe <= positive:
+            return (value,)
+        return value, self.uncertain(value, here, errors, largest, count)
 
     def uncertain(self, value: Any, here: Any, errors: Any, largest: Any, count: int) -> Any:
         """Return the points where the error may be too large, from its bound at the largest values first."""
@@ -217,14 +236,16 @@ def errors_at(name: str, value: Any, points: Mapping[str, Any]) -> Any:
 def enclosed_value(value: Scalar, point: Mapping[str, Fraction], otherwise: float) -> float:
     """Return the double nearest to a value with functions at a point, nan at a pole, `otherwise` where it is too large."""
     try:
-        for bits in _BITS:
+        for bits in (*_BITS, _MOST_BITS):
             with Precision(bits):
                 ball = _ball_at(value, point)
-                found = _double(ball) if ball.is_finite() else None
+                if not ball.is_finite():
+                    continue
+                if ball.abs_lower() > _LARGEST:
+                    return otherwise
+                found = _double(ball) if ball.abs_upper() < _LARGEST else None
             if found is not None:
                 return found
-    except InputError:
-        return otherwise
     except (ArithmeticError, ValueError):
         pass
     try:

@@ -101,14 +101,16 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
         there = StateSpace.from_polynomial(polynomial, there.dt, symbols=there.symbols)
     elif plant.origin is not None:
         kind, origin = getattr(plant.written, "realisation", None), substitute(plant.origin, values)
-        written = StateSpace.from_transfer_function(origin, there.dt, symbols=there.symbols, realisation=kind)
-        there = written if written.matrices == there.matrices else there
+        if plant.variable in symbols_in(origin):  # where all poles cancel, the states stay and the function has none
+            written = StateSpace.from_transfer_function(origin, there.dt, symbols=there.symbols, realisation=kind)
+            there = written if written.matrices == there.matrices else there
     elif plant.nonlinear is not None:
         there.nonlinear = plant.nonlinear.moved(values)
     kept = {name for value in values.values() for name in value.names}
     left = {name: sign for name, sign in there.symbols.signs.items() if name in kept or name not in values}
     there = there.with_symbols(replace(there.symbols, signs=left))
     there.is_from_floats, there.is_in_decimals = plant.is_from_floats, plant.is_in_decimals
+    there.is_at_values = True
     return there
 
 
@@ -195,8 +197,13 @@ def _moved(value: Any, values: dict[str, Scalar]) -> Any:
     if isinstance(value, tuple):
         return [str(Complex(substitute(p.real, values), substitute(p.imaginary, values))) for p in value]
     if isinstance(value, Matrix):
-        return [[str(entry) for entry in row] for row in substitute(value, values).rows]
+        return [[_written(entry) for entry in row] for row in substitute(value, values).rows]
     return str(substitute(value, values))
+
+
+def _written(entry: Scalar) -> str:
+    """Return an entry as it is read: c^k at c = 0, which is KroneckerDelta(k, 0), as 0^k."""
+    return str(entry).replace("KroneckerDelta(k, 0)", "0**k")
 
 
 # A result at many points at once: its fields as NumPy arrays, with what holds in a case where a condition fails.

@@ -203,9 +203,9 @@ class OutputMethods:
 
         Arrays of points are broadcast to one shape S; a matrix field has the shape S + (rows, columns).  Where a condition
         of the result, or a declared sign, fails, there stands what holds in that case, else `nan`.  Floating-point points
-        are read as their shortest decimals where a condition is decided.  Fields that depend on time or on the variable
-        of polynomials, and words, are left out.  Raises `InputError` where a parameter has no value, and where no field is
-        left.
+        are read as their shortest decimals where a condition is decided, or where terms cancel: values have ten certain
+        digits.  Fields that depend on time or on the variable of polynomials, and words, are left out.  Raises
+        `InputError` where a parameter has no value, and where no field is left.
         """
         from symobs.tasks.result.at_values import evaluate  # noqa: PLC0415 - it needs NumPy
 

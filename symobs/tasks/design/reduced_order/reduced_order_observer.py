@@ -343,12 +343,12 @@ class DependentOutputs(ReducedOrderObserver):
 def reduced_observer_of(
     plant: StateSpace, desired: DesiredPolynomial, T: Matrix | None = None, method_name: str = "partition"
 ) -> ReducedOrderObserver:
-    """Return the observer in the coordinates T, or in others where these are singular; the negative result on a stratum.
+    """Return the observer in the coordinates T, or in others where these are singular; the negative result where a case is.
 
-    Raises `InputError` where the outputs of a plant that is no stratum depend on each other.
+    Raises `InputError` where the outputs of a plant depend on each other that is neither a stratum nor at values.
     """
     C, ideal = plant.matrices.C, plant.ideal
-    if plant.is_stratum and (rows := kernel(C.T, ideal)).shape[1]:
+    if (plant.is_stratum or plant.is_at_values) and (rows := kernel(C.T, ideal)).shape[1]:
         w = modulo(rows.select(range(rows.shape[0]), [0]).T, ideal)
         return DependentOutputs(plant, method_name, dict.fromkeys("LTFGHM") | {"w": w}, desired)
     usable = T is not None and not plant.simplified(T.determinant()).is_zero
@@ -407,6 +407,8 @@ def reduced_order_observer(
     desired = desired_polynomial(plant, poles, polynomial, degree=unmeasured(plant))
     assert desired is not None  # noqa: S101 - required
     plant, (desired,) = in_common_field(plant, desired)
+    if plant.is_at_values and len(_pivots(plant.matrices.C, None)) < plant.outputs:
+        return reduced_observer_of(plant, desired).asked(method)
     coordinates = completed(plant.matrices.C) if T is None else _read_coordinates(T, plant)
     return choose("reduced_order_observer", method, "partition").solve(plant, desired, coordinates).asked(method)
 
