@@ -15,7 +15,7 @@ Where it is open `TooLarge` is raised.
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import cache
+from functools import lru_cache
 from itertools import product
 from random import Random
 from typing import TYPE_CHECKING, Any, TypeVar, cast
@@ -215,7 +215,7 @@ def _same_walls(left: Scalar, right: Scalar, signs: Mapping[str, str]) -> bool:
     return all(argument in own or _strict_sign(argument, signs) == "positive" for argument in others)
 
 
-@cache
+@lru_cache(maxsize=4096)
 def _strict_sign_of(value: Scalar, signs: tuple[tuple[str, str], ...]) -> str:
     known = dict(signs)
     found = sign_of(value, {**known, **{root.name: "positive" for root in all_roots(value)}})

@@ -10,7 +10,7 @@ A text is read once.  Where it has no part that depends on an environment, all r
 from __future__ import annotations
 
 import re
-from functools import cache
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias, TypeVar
 
 from symobs.exact import Matrix, Scalar, product_of
@@ -70,7 +70,7 @@ def written_relation(text: str, environment: Environment, **slots: Any) -> Relat
     return _Place(environment, slots).relation(found) if any(_depends(m, slots) for m in found.members) else found
 
 
-@cache
+@lru_cache(maxsize=4096)
 def read_formula(text: str) -> Formula:
     """Return the formula of a text, with its slots and units still open."""
     reader = _Reader(text)
@@ -78,7 +78,7 @@ def read_formula(text: str) -> Formula:
     return found if not reader.left else reader.refuse()
 
 
-@cache
+@lru_cache(maxsize=4096)
 def read_relation(text: str) -> Relation:
     """Return the relation of a text, with its slots and units still open."""
     reader = _Reader(text)
