@@ -97,7 +97,7 @@ class Problem:
             is_exact = all(results[place].fields[letter] is not None for letter, place in places_of_gains.items())
             with own:
                 try:
-                    there = plant if is_exact or None in gains.values() else plant.with_rounding()
+                    there = plant if is_exact or None in gains.values() else _rounded(plant)
                     found = task.function(there, **asked, **{letter: K for letter, K in gains.items() if K is not None})
                     if task.name == self.plant_of:
                         plant = found
@@ -220,6 +220,12 @@ def _meant_to_be_declared(data: Mapping[str, Any]) -> tuple[set[str], list[str]]
             refused.append(name)
         texts += [str(entry)] if isinstance(entry, list) else []
     return {*NAME.findall(" ".join([*texts, *refused]))}, refused
+
+
+def _rounded(plant: Any) -> StateSpace:
+    """Return a plant, or that of the task which finds it, as one whose page says that its data are rounded."""
+    found: StateSpace = plant.as_plant if isinstance(plant, Result) else plant
+    return found.with_rounding()
 
 
 #: Keywords that say which gain a task has, by its letter.
