@@ -233,9 +233,10 @@ def in_digits(design: Any) -> Any:
     """Return a design of numbers with its irrational data and gains rounded; itself where it is rational, or has letters."""
     fields = design.numbers
     gains = {letter: matrix_in_digits(fields[letter]) for letter in "KL" if fields.get(letter) is not None}
-    if None in gains.values() or all(gains[letter] == design.answer.get(letter) for letter in gains):
+    plant, is_same = design.plant.in_digits(), all(gains[letter] == design.answer.get(letter) for letter in gains)
+    if None in gains.values() or (is_same and plant is design.plant):
         return design
-    plant = design.plant.in_digits().with_rounding()
+    plant = plant.with_rounding()
     if design.task != "compensator":
         kind: Any = StateFeedbackDesign if "K" in gains else ObserverDesign
         return kind.of_given(plant, *gains.values())
