@@ -224,7 +224,8 @@ def _meant_to_be_declared(data: Mapping[str, Any]) -> tuple[set[str], list[str]]
 
 def _rounded(plant: Any) -> StateSpace:
     """Return a plant, or that of the task which finds it, as one whose page says that its data are rounded."""
-    found: StateSpace = plant.as_plant if isinstance(plant, Result) else plant
+    found = plant.as_plant if isinstance(plant, Result) else plant
+    assert isinstance(found, StateSpace)
     return found.with_rounding()
 
 
