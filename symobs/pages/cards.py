@@ -113,7 +113,7 @@ def _is_shown(value: Any) -> bool:
 
 def _card(result: Result, name: str, convention: Convention) -> Card:
     called, value = result.letters[name], result.fields[name]
-    left = _formula(called)
+    left = formula_named(called)
     if isinstance(value, tuple) and isinstance(value[0], Root):
         return Card(name, Roots(left, value), value)
     gains: Mapping[str, Any] = result.fields
@@ -122,7 +122,7 @@ def _card(result: Result, name: str, convention: Convention) -> Card:
     return Card(name, SignReversal(convention.turned, known).relation(relation), value)
 
 
-def _formula(name: str) -> Formula:
+def formula_named(name: str) -> Formula:
     """Return the formula of a letter, of det O or rank O, or of A - B K."""
     function, _, of = name.partition(" ")
     if function in {"det", "rank"}:

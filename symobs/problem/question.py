@@ -9,14 +9,16 @@ from __future__ import annotations
 import itertools
 import string
 from functools import cached_property, partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar, factored, root_of_pole
 from symobs.formula.expression import parse_polynomial
 from symobs.formula.phrases import QUESTIONS
 from symobs.formula.phrases.english.question_phrases import UNSAID
-from symobs.formula.tree import Roots, SymbolList
+from symobs.formula.tree import LetterList, Roots, SymbolList
 from symobs.ground.dataclass import dataclass
+from symobs.pages.cards import formula_named
 from symobs.problem.schema import keys_of
 from symobs.problem.validation import gains_from
 from symobs.proof.derivation import Note, Section, translated
@@ -39,11 +41,12 @@ from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import formula_of_factored, given, state_signs
 from symobs.tasks.analysis.time_response.horizons import INFINITE, read_horizon
 from symobs.tasks.result import Document
+from symobs.tasks.result.in_convention import names_in
 from symobs.tasks.result.output_methods import DIGITS
 from symobs.tasks.result.registry import result_type
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from symobs.formula.tree.term import Term
     from symobs.problem.validation import Problem
@@ -75,13 +78,18 @@ class Question(Document):
     """A question: a document without results."""
 
     page: Derivation | None = None
-    tasks: tuple[str, ...] = ()
+    #: The fields that each task asks for; none means its verdict.
+    asked: Mapping[str, tuple[str, ...]] = MappingProxyType({})
 
     @property
     def letters_asked(self) -> frozenset[str]:
         """The letters of what the tasks ask for."""
-        kinds = (result_type(task) for task in self.tasks if task != "unknown_input_observer")  # its L is of (C, TA)
-        return frozenset(kind.letters.get(name, name) for kind in kinds for name in kind.answered_by)
+        of_the_plant = {
+            task: names for task, names in self.asked.items() if task != "unknown_input_observer"
+        }  # (C, TA)
+        return frozenset(
+            result_type(task).letters.get(name, name) for task in of_the_plant for name in self.asked[task]
+        )
 
     @cached_property
     def derivations(self) -> tuple[Derivation, ...]:
@@ -100,25 +108,27 @@ def question_of(problem: Problem) -> Question:
     page.in_time(*(value for _, values in asked for value in values.values() if isinstance(value, Scalar | Matrix)))
     page.asked_for(problem.specification)
     _state_data(page, asked)
+    parts: dict[str, tuple[str, ...]] = {}
     with page.section("tasks" if len(asked) > 1 else "task"):
         for place, (task, values) in enumerate(asked):
             if len(asked) > 1:
                 page.remark("part", letter=_letter_of(place))
             for key in sentences_for(task, tokens_of(task, values, problem)):
                 page.steps.append(Note(_filled(page, task, key, values)))
+            origins = gains_from(task, values, [each.name for each, _ in asked[:place]])
+            for letter, origin in origins.items():
+                page.remark(f"uses_{letter}", part=_letter_of(origin))
+            parts[task.name] = _parts_asked(task, {*values, *origins}, problem)
+            _ask_for(page, task, parts[task.name], problem)
             if task.name in _MAY_DEPEND and problem.plant.field.names:
                 page.remark("exceptions_asked")
-            earlier = [each.name for each, _ in asked[:place]]
-            for letter, origin in gains_from(task, values, earlier).items():
-                page.remark(f"uses_{letter}", part=_letter_of(origin))
             if task.name == problem.plant_of:
                 page.remark("plant_found", letter=_letter_of(place))
     typed = problem.plant.is_in_decimals or has_decimals([*problem.specification.values()])
     digits = DIGITS if problem.digits is None and typed else problem.digits
-    names = tuple(task.name for task, _ in asked)
     of_page: dict[str, Any] = {
         "page": page.derivation(),
-        "tasks": names,
+        "asked": parts,
         "digits": digits,
         "language": problem.language,
     }
@@ -204,6 +214,29 @@ def sentences_for(task: Task, tokens: frozenset[str]) -> list[str]:
     further = [left[name] for name in task.keywords if name in left and name not in said]
     also = [key for word in further for key in (f"also {task.name} {word}", f"also {word}") if key in QUESTIONS]
     return [" ".join(best), *dict.fromkeys(key for key in also if QUESTIONS[key])]
+
+
+def _parts_asked(task: Task, given: Collection[str], problem: Problem) -> tuple[str, ...]:
+    """Return the fields that a task asks for: those of `[marking] asked`, else those that answer it."""
+    kind = result_type(task.name)
+    marked = [part.split(".", 1) for part in problem.marking.asked]
+    own = {name: standard for name, (standard, _) in names_in(problem.convention, task.name).items()}
+    named = tuple(own.get(name, name) for of, name in marked if of == task.name)
+    return named if marked else kind.fields_asked(given)
+
+
+def _ask_for(page: Builder, task: Task, parts: Sequence[str], problem: Problem) -> None:
+    """Say which letters answer a task; what has none is named by its sentence, or by the marks."""
+    kind = result_type(task.name)
+    of_time = {*kind.functions_of_time.values()}  # their sentences call them by name, in continuous and discrete time
+    letters = {name: letter for name, letter in kind.letters.items() if name not in of_time}
+    if named := [formula_named(letters[name]) for name in parts if name in letters]:
+        page.remark("give", letters=LetterList(tuple(named)))
+        if (key := f"means {task.name}") in QUESTIONS:
+            page.remark(key)
+    without = [name.replace("_", " ") for name in problem.marking.asked and parts if name not in kind.letters]
+    if fields := [name for name in without if name not in {"verdict", "conditions"}]:
+        page.remark("give_fields", names=", ".join(fields))
 
 
 def _filled(page: Builder, task: Task, key: str, values: Mapping[str, Any]) -> Sentence:

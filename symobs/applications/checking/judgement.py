@@ -117,7 +117,8 @@ def asked_of(result: Result) -> tuple[str, ...]:
 
     Where it depends on parameters whether something is so, a rank or a verdict alone does not say for which.
     """
-    there = tuple(name for name in result.answered_by if exists(result, name) or name in result.decimals)
+    asked = result.fields_asked(result.specification)
+    there = tuple(name for name in asked if exists(result, name) or name in result.decimals)
     depends = result.verdict == "conditional" and {*there} <= {"rank"} and bool(result.holds_where)
     return (*(there or ("verdict",)), *(("conditions",) if depends else ()))
 

@@ -248,6 +248,13 @@ class SymbolList:
     names: tuple[str, ...]
 
 
+@dataclass
+class LetterList:
+    """A list of letters that a sentence asks for: they need not be known, and nothing is claimed of them."""
+
+    letters: tuple[Formula, ...]
+
+
 Fact: TypeAlias = Relation | Predicate | Roots | HoldsExactlyWhere | Conjunction | Evaluated | SymbolList
 
 

@@ -11,6 +11,7 @@ from symobs.formula.tree import (
     Evaluated,
     HoldsExactlyWhere,
     Letter,
+    LetterList,
     Negative,
     Predicate,
     Product,
@@ -140,7 +141,7 @@ def _in_sentence(sentence: Sentence | None) -> Iterator[Formula]:
             yield from _in_facts((value,))
         elif isinstance(value, Evaluated):
             yield value.value
-        elif not isinstance(value, (str, SymbolList, *SPOKEN)):
+        elif not isinstance(value, (str, SymbolList, LetterList, *SPOKEN)):
             yield value
 
 

@@ -166,7 +166,8 @@ def _letters(document: Document) -> Mapping[str, LetterForm]:
     if document.convention.is_standard:
         return {}
     steps = [step for derivation in document.derivations for step in derivation.steps]
-    return document.convention.forms(reduced=not letters_used(steps).isdisjoint(OF_REDUCED_ORDER))
+    used = letters_used(steps) | document.letters_asked
+    return document.convention.forms(reduced=not used.isdisjoint(OF_REDUCED_ORDER))
 
 
 class _PageBlocks:

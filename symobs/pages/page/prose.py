@@ -23,6 +23,7 @@ from symobs.formula.tree import (
     Evaluated,
     HoldsExactlyWhere,
     Letter,
+    LetterList,
     Literal,
     Predicate,
     Relation,
@@ -121,6 +122,9 @@ def shown(slot: Formula | Fact | Counted | StateChoice | str, language: Language
             for place, name in enumerate(names):
                 between = "" if not place else last if place + 1 == len(names) else ", "
                 yield from (between, Literal(Scalar.symbol(name)))
+        case LetterList(letters):
+            for place, letter in enumerate(letters):
+                yield from ("" if not place else last if place + 1 == len(letters) else ", ", letter)
         case HoldsExactlyWhere(where=where) | Conjunction(relations=where):
             apart = "; " if language.has_comma and any(map(_has_decimals, where)) else ", "
             for place, relation in enumerate(where):

@@ -25,6 +25,7 @@ from symobs.formula.tree import (
     HoldsExactlyWhere,
     Identity,
     Letter,
+    LetterList,
     Literal,
     Predicate,
     Relation,
@@ -63,10 +64,10 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 #: What a slot of a sentence may hold besides formulas and words.
-FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Evaluated, SymbolList, *SPOKEN)
+FACTS = (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Evaluated, SymbolList, LetterList, *SPOKEN)
 
 Member: TypeAlias = Term | Scalar | Matrix | int
-Slot: TypeAlias = Term | Fact | Counted | StateChoice | str | Scalar | Matrix | int
+Slot: TypeAlias = Term | Fact | LetterList | Counted | StateChoice | str | Scalar | Matrix | int
 
 
 def warn_left_out(what: str) -> None:

@@ -24,6 +24,7 @@ from symobs.formula.tree import (
     Formula,
     HoldsExactlyWhere,
     Letter,
+    LetterList,
     Literal,
     Predicate,
     Relation,
@@ -243,7 +244,7 @@ def _sentence(sentence: Sentence, environment: Environment, discrete: bool) -> N
             reject(f"{slot}, which is not what {sentence.key} speaks of,")
         if isinstance(slot, (Relation, Predicate, Roots, HoldsExactlyWhere, Conjunction, Evaluated, SymbolList)):
             _fact(slot, environment, discrete)
-        elif not isinstance(slot, (str, *SPOKEN)):
+        elif not isinstance(slot, (str, LetterList, *SPOKEN)):
             _established(slot, environment)
             if next(literals(slot), None) is not None and sentence.key not in NAMING:
                 reject(f"{plain(slot, environment.variable)}, a value in a sentence without what it is the value of,")

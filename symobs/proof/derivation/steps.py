@@ -14,6 +14,7 @@ from symobs.formula.tree import (
     Evaluated,
     Formula,
     HoldsExactlyWhere,
+    LetterList,
     Literal,
     Predicate,
     Relation,
@@ -37,7 +38,7 @@ class Sentence:
     """A phrase of `phrases.PHRASES`, its slots filled by formulas, facts, text, or what a language puts into words."""
 
     key: str
-    slots: tuple[tuple[str, Formula | Fact | Counted | StateChoice | str], ...] = ()
+    slots: tuple[tuple[str, Formula | Fact | LetterList | Counted | StateChoice | str], ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse slots that do not match the phrase."""

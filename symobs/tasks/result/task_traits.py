@@ -11,7 +11,7 @@ from symobs.system.specification import in_common_field
 from symobs.tasks.result.output_methods import OutputMethods
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from symobs.exact import Scalar
     from symobs.system import StateSpace
@@ -22,6 +22,8 @@ class TaskTraits(OutputMethods):
 
     #: The fields that answer the task; none means its verdict.
     answered_by: ClassVar[tuple[str, ...]] = ()
+    #: The fields that answer it where the specification gives all of these.
+    answered_where_given: ClassVar[tuple[str, ...]] = ()
     #: The gains: each is right where its claim holds, those that are one only together, and the other fields follow.
     gains: ClassVar[tuple[str, ...]] = ()
     gains_are_one: ClassVar[bool] = False
@@ -51,6 +53,11 @@ class TaskTraits(OutputMethods):
     def loop_matrix(self) -> Matrix | None:
         """The closed loop of an answer whose poles are found and not asked for; None for any other answer."""
         return None
+
+    @classmethod
+    def fields_asked(cls, given: Collection[str]) -> tuple[str, ...]:
+        """Return the fields that are asked for where the specification has these keys; none means the verdict."""
+        return tuple(name for name in cls.answered_by if name not in given) or cls.answered_where_given
 
     def __dir__(self) -> Iterable[str]:
         """List what users ask for: these are of the task, and not of its answer."""

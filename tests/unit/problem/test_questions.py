@@ -6,6 +6,7 @@ import string
 
 import pytest
 
+from symobs.applications.checking import check
 from symobs.formula.phrases import QUESTIONS
 from symobs.ground.errors import InputError
 from symobs.problem import read
@@ -61,6 +62,23 @@ def test_several_tasks_have_letters_and_given_gains_stand_among_the_data() -> No
     assert r"L=\begin{bmatrix}19\\81\end{bmatrix}" in said.partition("Tasks.")[0]
     assert r"\textbf{Tasks.} (a) Is the pair ($C$, $A$) observable?" in said
     assert "(b) Find the characteristic polynomial of the observer with the gain $L$" in said
+
+
+@pytest.mark.parametrize(
+    ("marked", "said"),
+    [
+        ('"observer.L"', "Give L."),
+        ('"observer.polynomial", "observer.L"', "Give χ_(A-LC)(s) and L."),
+        ('"observer.verdict"', "-2."),
+    ],
+)
+def test_the_question_asks_for_what_is_marked(marked: str, said: str) -> None:
+    assert asked(f"poles = [-1, -2]\n[marking]\nasked = [{marked}]").endswith(said)
+
+
+def test_what_is_marked_of_a_given_gain_is_not_the_gain() -> None:
+    problem = 'task = "observer"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n[specification]\nL = "[19; 81]"\n'
+    assert check(problem, "s^2 + 20*s + 100").verdict == "right"  # s² + (1 + l₁)s + l₁ + l₂ by hand
 
 
 def test_a_specification_that_cannot_be_read_is_an_error() -> None:

@@ -3,7 +3,8 @@
 The key of a sentence says when it is said: `ask` and a task, then what the specification must contain, a keyword, or
 `keyword=value` where it is a word; `poles=1` is a single pole, `discrete` discrete time.  Of several that fit, the one that says most is
 said.
-What it leaves unsaid is said by sentences that begin with `also`, for one task or for all.  Slots are keywords.
+What it leaves unsaid is said by sentences that begin with `also`, for one task or for all; `means` and a task says what the
+letters mean that answer it.  Slots are keywords.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ PHRASES: dict[str, str] = {
     "part": "({letter})",
     "uses_K": "Use the gain $K$ of part ({part}).",
     "uses_L": "Use the gain $L$ of part ({part}).",
+    "give": "Give {letters}.",
+    "give_fields": "Give: {names}.",
     "plant_found": "The following parts are about the plant found in part ({letter}).",
     "exceptions_asked": "If the answer depends on the parameters, give the values for which it is no.",
     # What is said of a task without a sentence of its own: the first line of its description.
@@ -79,6 +82,8 @@ NAMING = (
     "task",
     "tasks",
     "part",
+    "give",
+    "give_fields",
     "plant_found",
     "uses_K",
     "uses_L",

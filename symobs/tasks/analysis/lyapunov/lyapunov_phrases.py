@@ -34,7 +34,7 @@ PHRASES: dict[str, str] = {
 
 QUESTIONS: dict[str, str] = {
     "ask lyapunov": "Solve the Lyapunov equation of the plant with the identity matrix on its right-hand side. Is the solution positive definite?",
-    "ask lyapunov Q": "Solve the Lyapunov equation of the plant with $Q_l$ on its right-hand side. Is the solution unique and positive definite?",
+    "ask lyapunov Q": "Solve the Lyapunov equation of the plant with $Q_l$ on its right-hand side. Is the solution positive definite?",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {

@@ -30,11 +30,13 @@ PHRASES: dict[str, str] = {
 }
 
 QUESTIONS: dict[str, str] = {
+    "means canonical_form": "The new state is $T x$.",
     "ask canonical_form": "Transform the plant to canonical form.",
     "ask canonical_form kind=controllable": "Transform the plant to controllable canonical form.",
     "ask canonical_form kind=observable": "Transform the plant to observable canonical form.",
     "ask canonical_form kind=modal": "Transform the plant to real modal form.",
-    "ask decomposition": "Find the Kalman decomposition of the plant, its minimal part, and the transfer function of that part.",
+    "means decomposition": "The new state is $T x$.",
+    "ask decomposition": "Find a Kalman decomposition of the plant, and the sizes of its four parts.",
 }
 
 DEMANDS: dict[str, str] = {

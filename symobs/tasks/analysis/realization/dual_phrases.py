@@ -18,9 +18,9 @@ PHRASES: dict[str, str] = {
 }
 
 QUESTIONS: dict[str, str] = {
-    "ask dual": "Form the dual plant. Which ranks are equal by duality?",
-    "ask dual sign=1": "Form the dual plant with the state matrix $Aᵀ$. Which ranks are equal by duality?",
-    "ask dual sign=-1": "Form the dual plant with the state matrix $- Aᵀ$. Which ranks are equal by duality?",
+    "ask dual": "Form the dual plant.",
+    "ask dual sign=1": "Form the dual plant with the state matrix $Aᵀ$.",
+    "ask dual sign=-1": "Form the dual plant with the state matrix $- Aᵀ$.",
 }
 
 DEMANDS: dict[str, str] = {

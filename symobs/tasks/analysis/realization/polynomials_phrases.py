@@ -24,8 +24,8 @@ PHRASES: dict[str, str] = {
 }
 
 QUESTIONS: dict[str, str] = {
-    "ask characteristic_polynomial": "Find the characteristic polynomial of $A$ and its roots.",
-    "ask transfer_function": "Find the transfer function of the plant in lowest terms, its poles and its zeros.",
+    "ask characteristic_polynomial": "Find the characteristic polynomial of $A$.",
+    "ask transfer_function": "Find the transfer function of the plant in lowest terms.",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {

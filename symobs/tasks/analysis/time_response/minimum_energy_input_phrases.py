@@ -21,10 +21,10 @@ PHRASES: dict[str, str] = {
 }
 
 QUESTIONS: dict[str, str] = {
-    "ask minimum_energy_input": "Find the input of minimum energy that leads from the given initial state to the given final state over the horizon {horizon}, and its energy.",
-    "ask minimum_energy_input final": "Find the input of minimum energy that leads from rest to the final state {final} over the horizon {horizon}, and its energy.",
-    "ask minimum_energy_input initial": "Find the input of minimum energy that leads from the initial state {initial} to rest over the horizon {horizon}, and its energy.",
-    "ask minimum_energy_input initial final": "Find the input of minimum energy that leads from the initial state {initial} to the final state {final} over the horizon {horizon}, and its energy.",
+    "ask minimum_energy_input": "Find the input of minimum energy that leads from the given initial state to the given final state over the horizon {horizon}.",
+    "ask minimum_energy_input final": "Find the input of minimum energy that leads from rest to the final state {final} over the horizon {horizon}.",
+    "ask minimum_energy_input initial": "Find the input of minimum energy that leads from the initial state {initial} to rest over the horizon {horizon}.",
+    "ask minimum_energy_input initial final": "Find the input of minimum energy that leads from the initial state {initial} to the final state {final} over the horizon {horizon}.",
 }
 
 DEMANDS: dict[str, str] = {

@@ -107,12 +107,12 @@ PHRASES: dict[str, str] = {
 QUESTIONS: dict[str, str] = {
     "ask matrix_exponential": "Find the matrix exponential $exp_At$, in real form.",
     "ask matrix_exponential discrete": "Find the powers $A_k$ of the state matrix, in real form.",
-    "ask gramian": "Find the observability Gramian over the horizon {horizon} and its determinant. Is the plant observable?",
-    "ask gramian horizon=inf": "Find the infinite-horizon observability Gramian and its determinant. Is the plant observable?",
-    "ask gramian of=observability": "Find the observability Gramian over the horizon {horizon}, with its determinant.",
-    "ask gramian of=observability horizon=inf": "Find the infinite-horizon observability Gramian and its determinant.",
-    "ask gramian of=controllability": "Find the controllability Gramian over the horizon {horizon}, with its determinant.",
-    "ask gramian of=controllability horizon=inf": "Find the infinite-horizon controllability Gramian and its determinant.",
+    "ask gramian": "Find the observability Gramian over the horizon {horizon}.",
+    "ask gramian horizon=inf": "Find the infinite-horizon observability Gramian.",
+    "ask gramian of=observability": "Find the observability Gramian over the horizon {horizon}.",
+    "ask gramian of=observability horizon=inf": "Find the infinite-horizon observability Gramian.",
+    "ask gramian of=controllability": "Find the controllability Gramian over the horizon {horizon}.",
+    "ask gramian of=controllability horizon=inf": "Find the infinite-horizon controllability Gramian.",
     "ask initial_state": "Determine the initial state from the output.",
     "ask initial_state output": "The output {output} was measured up to the time {horizon}, with zero input. Determine the initial state.",
     "ask initial_state discrete output": "The samples of the output from $k=0$ on are {output}, with zero input. Determine the initial state.",
@@ -121,8 +121,8 @@ QUESTIONS: dict[str, str] = {
     "also initial_state input": "The input is {input}.",
     "also initial_state_covariance Q": "The known input is corrupted by white noise {Q}.",
     "ask initial_state_covariance": "Find the covariance of the Gramian-based estimate of the initial state from a noisy output.",
-    "ask initial_state_covariance R": "The output is measured with white noise {R} up to the time {horizon}. Find the covariance of the Gramian-based estimate of the initial state, and the best horizon for each component.",
-    "ask initial_state_covariance Q R": "The known input is corrupted by white noise {Q} and the output by white noise {R}, up to the time {horizon}. Find the covariance of the Gramian-based estimate of the initial state, and the best horizon for each component.",
+    "ask initial_state_covariance R": "The output is measured with white noise {R} up to the time {horizon}. Find the covariance of the Gramian-based estimate of the initial state.",
+    "ask initial_state_covariance Q R": "The known input is corrupted by white noise {Q} and the output by white noise {R}, up to the time {horizon}. Find the covariance of the Gramian-based estimate of the initial state.",
 }
 
 ASSERTS: dict[str, tuple[str, ...]] = {

@@ -55,11 +55,11 @@ PHRASES: dict[str, str] = {
 }
 
 QUESTIONS: dict[str, str] = {
-    "ask compensator": "Design an observer-based compensator (state feedback with a full-order observer), and find the closed loop.",
-    "ask compensator observer=full": "Design an observer-based compensator (state feedback with a full-order observer), and find the closed loop.",
-    "ask compensator observer=minimal": "Design an observer-based compensator (state feedback with a reduced-order observer), and find the closed loop.",
-    "ask compensator method=minimal_order": "Design an observer-based compensator (state feedback with a reduced-order observer), and find the closed loop.",
-    "ask compensator K L": "Close the loop with the feedback gain $K$ and a full-order observer with the gain $L$, and find its poles.",
+    "ask compensator": "Design an observer-based compensator (state feedback with a full-order observer).",
+    "ask compensator observer=full": "Design an observer-based compensator (state feedback with a full-order observer).",
+    "ask compensator observer=minimal": "Design an observer-based compensator (state feedback with a reduced-order observer).",
+    "ask compensator method=minimal_order": "Design an observer-based compensator (state feedback with a reduced-order observer).",
+    "ask compensator K L": "Close the loop with the feedback gain $K$ and a full-order observer with the gain $L$.",
     "ask compensator K": "Close the loop with the feedback gain $K$ and a full-order observer.",
     "ask compensator L": "Close the loop with state feedback and a full-order observer with the gain $L$.",
 }

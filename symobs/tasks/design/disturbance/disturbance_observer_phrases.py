@@ -31,6 +31,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 QUESTIONS: dict[str, str] = {
+    "means disturbance_observer": "They correct the estimates of the state and of the disturbance by the output error.",
     "ask disturbance_observer": "Design an observer of the state and of the disturbance.",
     "ask disturbance_observer poles": "Design an observer of the state and of the disturbance with the poles {poles}.",
     "ask disturbance_observer polynomial": "Design an observer of the state and of the disturbance with the characteristic polynomial {polynomial}.",

@@ -40,6 +40,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 QUESTIONS: dict[str, str] = {
+    "means unknown_input_observer": "Here $H_d C E_d = E_d$, and $L$ is a gain for the pair ($C$, $A - H_d C A$).",
     "ask unknown_input_observer": "Design an observer whose estimation error does not depend on the unknown input.",
     "ask unknown_input_observer poles": "Design an observer with the poles {poles} whose estimation error does not depend on the unknown input.",
     "ask unknown_input_observer polynomial": "Design an observer with the characteristic polynomial {polynomial} whose estimation error does not depend on the unknown input.",

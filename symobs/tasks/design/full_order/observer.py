@@ -91,6 +91,7 @@ class ObserverDesign(GainDesign):
 
     task: ClassVar[str] = "observer"
     answered_by = ("L",)
+    answered_where_given = ("polynomial",)
     gains = ("L",)
     shows_gain = "A"
     letters = {

@@ -34,6 +34,7 @@ class StateFeedbackDesign(GainDesign):
 
     task: ClassVar[str] = "state_feedback"
     answered_by = ("K",)
+    answered_where_given = ("polynomial",)
     gains = ("K",)
     letters = {
         "K": "K",

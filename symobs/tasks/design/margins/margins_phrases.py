@@ -23,10 +23,10 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 QUESTIONS: dict[str, str] = {
-    "ask margins": "Find the gain margins, the phase margin and the peak of the sensitivity of the loop.",
-    "ask margins poles": "Find the gain margins, the phase margin and the peak of the sensitivity of the loop with the poles {poles}.",
-    "ask margins polynomial": "Find the gain margins, the phase margin and the peak of the sensitivity of the loop with the characteristic polynomial {polynomial}.",
-    "ask margins controller": "Find the gain margins, the phase margin and the peak of the sensitivity of the loop of the plant and the controller {controller}.",
+    "ask margins": "Find the gain margins and the phase margin of the loop.",
+    "ask margins poles": "Find the gain margins and the phase margin of the loop with the poles {poles}.",
+    "ask margins polynomial": "Find the gain margins and the phase margin of the loop with the characteristic polynomial {polynomial}.",
+    "ask margins controller": "Find the gain margins and the phase margin of the loop of the plant and the controller {controller}.",
     "also margins K": "The feedback gain is $K$.",
     "also margins L": "The observer gain is $L$.",
     "also margins observer=minimal": "Use an observer of minimal order.",

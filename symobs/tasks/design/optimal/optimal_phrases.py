@@ -54,14 +54,14 @@ PHRASES: dict[str, str] = {
 }
 
 QUESTIONS: dict[str, str] = {
-    "ask lqr": "Find the state feedback that minimises the integral of $xᵀ Q_x x + uᵀ R_u u$ over all times. What is the polynomial of the loop?",
-    "ask lqr discrete": "Find the state feedback that minimises the sum of $xᵀ Q_x x + uᵀ R_u u$ over all instants. What is the polynomial of the loop?",
-    "ask lqr N": "Find the state feedback that minimises the integral of $xᵀ Q_x x + 2 xᵀ N_x u + uᵀ R_u u$ over all times. What is the polynomial of the loop?",
-    "ask lqr N discrete": "Find the state feedback that minimises the sum of $xᵀ Q_x x + 2 xᵀ N_x u + uᵀ R_u u$ over all instants. What is the polynomial of the loop?",
-    "ask kalman": "Find the gain of the steady-state Kalman filter for input noise of intensity $W_n$ and output noise of intensity $V_n$. What is the covariance of the error?",
-    "ask kalman N": "Find the gain of the steady-state Kalman filter for input noise of intensity $W_n$ and output noise of intensity $V_n$, which are correlated with $N_n$. What is the covariance of the error?",
-    "ask kalman G N": "Find the gain of the steady-state Kalman filter for noise of intensity $W_n$ that enters through $G_n$, and output noise of intensity $V_n$, which are correlated with $N_n$. What is the covariance of the error?",
-    "ask kalman G": "Find the gain of the steady-state Kalman filter for noise of intensity $W_n$ that enters through $G_n$, and output noise of intensity $V_n$. What is the covariance of the error?",
+    "ask lqr": "Find the state feedback that minimises the integral of $xᵀ Q_x x + uᵀ R_u u$ over all times.",
+    "ask lqr discrete": "Find the state feedback that minimises the sum of $xᵀ Q_x x + uᵀ R_u u$ over all instants.",
+    "ask lqr N": "Find the state feedback that minimises the integral of $xᵀ Q_x x + 2 xᵀ N_x u + uᵀ R_u u$ over all times.",
+    "ask lqr N discrete": "Find the state feedback that minimises the sum of $xᵀ Q_x x + 2 xᵀ N_x u + uᵀ R_u u$ over all instants.",
+    "ask kalman": "Find the gain of the steady-state Kalman filter for input noise of intensity $W_n$ and output noise of intensity $V_n$.",
+    "ask kalman N": "Find the gain of the steady-state Kalman filter for input noise of intensity $W_n$ and output noise of intensity $V_n$, which are correlated with $N_n$.",
+    "ask kalman G N": "Find the gain of the steady-state Kalman filter for noise of intensity $W_n$ that enters through $G_n$, and output noise of intensity $V_n$, which are correlated with $N_n$.",
+    "ask kalman G": "Find the gain of the steady-state Kalman filter for noise of intensity $W_n$ that enters through $G_n$, and output noise of intensity $V_n$.",
 }
 
 CONTINUES = ("optimal_root",)

@@ -33,6 +33,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 QUESTIONS: dict[str, str] = {
+    "means integral_action": "The law is $u = -K x + k_I xi_I$ with the integral $xi_I$ of $r_in - y$.",
     "ask integral_action": "Design state feedback with integral action, such that the output follows constant references.",
     "ask integral_action poles": "Design state feedback with integral action, such that the output follows constant references and the closed loop has the poles {poles}.",
     "ask integral_action polynomial": "Design state feedback with integral action, such that the output follows constant references and the closed loop has the characteristic polynomial {polynomial}.",

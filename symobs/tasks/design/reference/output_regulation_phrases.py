@@ -35,6 +35,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 }
 
 QUESTIONS: dict[str, str] = {
+    "means output_regulation": "On the trajectory of the exosystem $x = Pi_w w_e$ and $u = Gamma_w w_e$.",
     "ask output_regulation": "Design a state feedback with feedforward of the exosystem, such that the output follows the reference.",
     "ask output_regulation poles": "Design a state feedback with the poles {poles} and a feedforward of the exosystem, such that the output follows the reference.",
     "ask output_regulation polynomial": "Design a state feedback with the characteristic polynomial {polynomial} and a feedforward of the exosystem, such that the output follows the reference.",

@@ -19,6 +19,7 @@ PHRASES: dict[str, str] = {
 }
 
 QUESTIONS: dict[str, str] = {
+    "means tracking": "$K_d$ is the gain of the reference that leaves it out of the error.",
     "ask tracking": "Design a tracking controller, by state feedback and a reduced-order observer, for references $x_d$ that are trajectories of the unforced plant.",
     "ask tracking reference_matrix": "Design a tracking controller, by state feedback and a reduced-order observer, for every reference $x_d$. Is this possible?",
     "ask tracking reference_matrix reference_start": "Design a tracking controller, by state feedback and a reduced-order observer, for the reference $x_d$ with the given initial state. Is this possible?",
