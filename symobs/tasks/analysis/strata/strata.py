@@ -360,7 +360,7 @@ def solved(plant: StateSpace, asked: Iterable[Place], solve: Solve) -> tuple[Cas
     def with_strata(case: Case) -> Result | None:
         # Its own strata are made now, where what cannot be claimed on them can be left undecided.
         if case.result is not None and case.result.plant.equations:
-            pass
+            _ = case.result.case_tree
         return case.result
 
     found = [(place, case) for place in asked for case in _case(place, plant, partial(answer, place))]

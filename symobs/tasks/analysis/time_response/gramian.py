@@ -32,7 +32,7 @@ from symobs.proof.derivation.builder import predicate, relation, sentence
 from symobs.stability.criteria.stability import StabilityVerdict, stability
 from symobs.stability.inequalities.simplify import as_inequality
 from symobs.system.conditions import Condition, vanishing_factors
-from symobs.tasks.analysis.page_parts import HIDDEN, hidden_polynomial, stratum_of
+from symobs.tasks.analysis.page_parts import HIDDEN, hidden_polynomial, redefined_letters, stratum_of
 from symobs.tasks.analysis.rank.rank_test import (
     minor_claim,
     power_rows,
@@ -528,11 +528,15 @@ def _tell_finite_sum(result: Gramian, page: Builder) -> None:
         found = case.result
         if isinstance(found, Gramian) and found.answer["rank"]["kernel"].shape[1] > known:
             there = inside_case(page, found.plant, case.substitution)
+            before = there.environment
             if found.answer["matrix"] is not None:
                 there.set("W", found.answer["matrix"])
             _tell_kernel(found, there)
             if len(there.steps) > 1:
-                page.steps.append(CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(there.steps)))
+                anew = redefined_letters(before, there.environment)
+                page.steps.append(
+                    CaseStep(stratum_of(case), tuple(case.substitution.items()), tuple(there.steps), anew=anew)
+                )
 
 
 def _tell_kernel_over_steps(result: Gramian, page: Builder) -> None:
@@ -571,7 +575,8 @@ def _tell_kernel(result: Gramian, page: Builder) -> None:
     if result.answer["matrix"] is None or result.answer["of"] == "controllability" or is_elsewhere:
         return
     several = kernel.shape[1] > 1
-    v = page["N"] if several and page.defines("N") else page.set("N" if several else "v", kernel)
+    is_known = several and page.defines("N") and page["N"].value == kernel
+    v = page["N"] if is_known else page.set("N" if several else "v", kernel)
     zero = Matrix.zeros(page["C"].value.shape[0], kernel.shape[1])
     nothing = Matrix.zeros(*kernel.shape)
     page.equal(relation(v, v.value), say="kernel_shared")

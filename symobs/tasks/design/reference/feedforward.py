@@ -457,5 +457,5 @@ def _is_without(case: Case) -> bool:
 
 def _without(case: Case, G: Term) -> CaseStep:
     """Return that there is no F on a stratum."""
-    step = Conclude(sentence("no_feedforward_single", {}), (relation(G, Matrix.zeros(1, 1)),))
+    step = Conclude(sentence("no_feedforward_single", {}), (relation(G, Matrix.zeros(*G.value.shape)),))
     return CaseStep(relation(case.when[0].expression, 0), tuple(case.substitution.items()), (step,))
