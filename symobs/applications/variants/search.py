@@ -44,6 +44,8 @@ if TYPE_CHECKING:
 MOST = 10_000
 #: Seconds of work handed over at a time: what is begun beyond the last variant is done for nothing.
 _CHUNK = 0.05
+#: Where so many times as many candidates as there are data repeat what was drawn, there is nothing else to be drawn.
+_REPEATS = 30
 _SAME = "the same as another variant"
 _OF_ONE_KIND = "the first one is of a rare kind: draw distinct poles, or take another seed"
 PROFILES = ("loose", "strict")
@@ -94,6 +96,7 @@ class Variants:
         self._reference: tuple[Mapping[str, Any], Mapping[str, Any]] | None = None
         self._keys: set[str] = set()
         self._taken: set[str] = set()
+        self._refused: dict[str, str] = {}
         self._running: Iterator[Variant] | None = None
 
     def __len__(self) -> int:
@@ -150,34 +153,42 @@ class Variants:
             if self.table.like == "base":
                 self._measure_base(force)
             while len(self._found) < self.count:
-                is_first = self._reference is None
+                is_first, before = self._reference is None, len(self._found)
                 for found, outcome in self._judged(force, start):
                     start = found.number + 1
                     reason = outcome if isinstance(outcome, str) else self._refusal(found, outcome)
                     if reason is not None:
                         self._reasons.append((found.number, reason))
+                        self._refused[data_key(found)] = reason
                         continue
                     self._last = found.number
                     yield self._accepted(found, outcome)
                     if is_first or len(self._found) == self.count:
                         break
                 else:
-                    if start > self._last + self.attempts:
+                    if len(self._found) == before:
                         raise self._too_few(start)
 
     def _judged(self, force: Workforce, start: int) -> Iterator[tuple[Candidate, str | dict[str, Any]]]:
         """Yield candidates in their order from `start` on, each with the cheap reason against it or what became of it."""
         waiting: deque[tuple[Candidate, str | None, str]] = deque()
         rows: dict[str, dict[str, Any]] = {}
+        ordered: dict[str, str] = {}  # by their data: what is drawn again is not solved again
 
         def jobs() -> Iterator[Job]:
-            number = start
-            while number <= self._last + self.attempts:
+            number = newest = start
+            seen: set[str] = set()
+            while number <= self._last + self.attempts and number <= newest + _REPEATS * (len(seen) + 1):
                 found = candidate(self.table, self.seed, number)
-                test = cheap(self.table, found, self._reference and self._reference[0])
-                reason = test.reason or (_SAME if data_key(found) in self._taken else None)
-                order = None if reason else self._job(found, test)
-                waiting.append((found, reason, order.key if order else ""))
+                if data_key(found) not in seen:
+                    seen.add(data_key(found))
+                    newest = number
+                test, data = cheap(self.table, found, self._reference and self._reference[0]), data_key(found)
+                reason = test.reason or (_SAME if data in self._taken else self._refused.get(data))
+                order = None if reason or data in ordered else self._job(found, test)
+                if order is not None:
+                    ordered[data] = order.key
+                waiting.append((found, reason, "" if reason else ordered[data]))
                 number += 1
                 if number % 1000 == 0:
                     self.told(len(self._found), number)
@@ -190,10 +201,9 @@ class Variants:
             while waiting and (waiting[0][1] or waiting[0][2] in rows):
                 found, reason, key = waiting.popleft()
                 self.told(len(self._found), found.number)
-                yield found, reason or rows.pop(key)
-        for found, reason, _ in waiting:
-            assert reason is not None  # noqa: S101 - every job has had its row
-            yield found, reason
+                yield found, reason or rows[key]
+        for found, reason, key in waiting:
+            yield found, reason or rows[key]
 
     def _job(self, found: Candidate, test: Cheap) -> Job:
         payload = {
