@@ -299,7 +299,7 @@ def test_relations_among_parameters_are_read_with_the_table() -> None:
 
 def test_few_data_are_drawn_out_soon() -> None:
     """Of det [B AB] = 3 − v seven values of v make one pair that is not controllable, which no other one is like."""
-    plant = "[plant]\nA = \"[1 2; 0 v]\"\nB = \"[1; 1]\"\n"
+    plant = '[plant]\nA = "[1 2; 0 v]"\nB = "[1; 1]"\n'
     text = f'task = "controllability"\n{plant}[variants.parameters]\nv = {{ integers = [3, 9] }}\n'
     with pytest.raises(TooFew, match="1 of 2 variants") as raised:
         list(Variants(text, 2, in_process=True))
