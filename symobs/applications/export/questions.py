@@ -47,21 +47,6 @@ if TYPE_CHECKING:
 # The parts of an exported question: what decides about each, as data of the grader.
 
 
-#: Fields of which one value is right, and nothing else of the task bears on it.
-VALUES = {
-    ("characteristic_polynomial", "polynomial"),
-    ("controllability", "rank"),
-    ("decomposition", "minimal_order"),
-    ("gramian", "determinant"),
-    ("gramian", "matrix"),
-    ("initial_state", "x0"),
-    ("initial_state_covariance", "covariance"),
-    ("matrix_exponential", "matrix"),
-    ("observability", "rank"),
-    ("transfer_function", "transfer_function"),
-}
-
-
 #: The slips that a grader finds; the marks of a question may credit no others.
 SLIPS = ("sign", "sign_convention", "transposed", "entry", "rounded", "other_half")
 _ELSEWHERE = "leave it out with --asked, or have the answers checked by symobs check"
@@ -127,7 +112,7 @@ def exported_part(view: ResultInConvention, field: str, name: str, weight: str) 
         return _gain(view, field, made)
     if isinstance(view.result, CompensatorDesign) and field == "F":
         return _compensator(view, made)
-    if (view.task, field) in VALUES:
+    if view.result.has_one_value(field):
         return _value(view, field, made)
     raise _refused(made["part"], "an exported grader does not hold what decides about it")
 
@@ -201,6 +186,12 @@ def _compensator(view: ResultInConvention, made: dict[str, Any]) -> ExportedPart
 def _value(view: ResultInConvention, field: str, made: dict[str, Any]) -> ExportedPart:
     """Return a value that is the only right one."""
     found = view.result.fields[field]
+    if found in ("yes", "no"):
+        return _part(made | {"kind": "word", "symbolic": False, "right": found}, ((found,),))
+    if isinstance(found, (list, tuple)) and found and all(isinstance(entry, Scalar) for entry in found):
+        found = Matrix.column(found)
+    if view.standard(made["letter"])[1] < 0 and isinstance(found, Matrix):
+        found = -found
     table = factored_table(found)
     value = found.value if isinstance(found, Factored) else found if table is None else table
     whole = isinstance(value, int) and not isinstance(value, bool)

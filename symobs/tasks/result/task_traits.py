@@ -31,6 +31,8 @@ class TaskTraits(OutputMethods):
     claimed: ClassVar[tuple[str, ...]] = ()
     #: A field A − L C, or T A − L C, from which a gain L follows.
     shows_gain: ClassVar[str] = ""
+    #: Fields of which one value is right, whatever else is answered: a grader outside symobs compares it.
+    only_value: ClassVar[tuple[str, ...]] = ()
     #: Fields that are right in many coordinates.
     in_coordinates: ClassVar[tuple[str, ...]] = ()
     #: What a page calls a function of time, without spaces and signs of products, and its field.
@@ -58,6 +60,10 @@ class TaskTraits(OutputMethods):
     def fields_asked(cls, given: Collection[str]) -> tuple[str, ...]:
         """Return the fields that are asked for where the specification has these keys; none means the verdict."""
         return tuple(name for name in cls.answered_by if name not in given) or cls.answered_where_given
+
+    def has_one_value(self, name: str) -> bool:
+        """Whether one value of a field is right."""
+        return name in self.only_value
 
     def __dir__(self) -> Iterable[str]:
         """List what users ask for: these are of the task, and not of its answer."""

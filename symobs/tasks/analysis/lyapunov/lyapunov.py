@@ -60,6 +60,7 @@ class LyapunovSolution(PutAgain):
     inputs = ("weight",)
     task: ClassVar[str] = "lyapunov"
     answered_by = ("P", "positive_definite")
+    only_value = ("P", "positive_definite")
     claimed = ("P",)
     letters = {"P": "P_l", "minors": "Delta"}
     cards = ("P",)

@@ -40,6 +40,7 @@ class Observability(RankResult):
 
     task: ClassVar[str] = "observability"
     answered_by = ("rank",)
+    only_value = ("rank",)
     letters = {"matrix": "O", "rank": "rank O", "determinant": "det O", "kernel": "N"}
     panels = ("cases",)
     repaired_by: ClassVar[str] = "measured"
@@ -78,6 +79,7 @@ class Controllability(RankResult):
 
     task: ClassVar[str] = "controllability"
     answered_by = ("rank",)
+    only_value = ("rank",)
     letters = {
         "matrix": "Ctr",
         "rank": "rank Ctr",

@@ -28,6 +28,7 @@ class CharacteristicPolynomial(Result):
 
     task: ClassVar[str] = "characteristic_polynomial"
     answered_by = ("polynomial",)
+    only_value = ("polynomial",)
     letters = {"polynomial": "chi", "roots": "chi"}
 
     def claims(self) -> Iterator[Claim]:

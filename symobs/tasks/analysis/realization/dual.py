@@ -45,6 +45,7 @@ class Dual(Result):
 
     task: ClassVar[str] = "dual"
     answered_by = ("A", "B", "C")
+    only_value = ("A", "B", "C")
     letters = {"A": "A_dual", "B": "B_dual", "C": "C_dual", "D": "D_dual"}
 
     def claims(self) -> Iterator[Claim]:

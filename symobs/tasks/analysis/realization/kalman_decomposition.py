@@ -46,6 +46,7 @@ class Decomposition(Result):
 
     task: ClassVar[str] = "decomposition"
     answered_by = ("T", "sizes")
+    only_value = ("minimal_order",)
     in_coordinates = ("T", "A", "B", "C", "sizes")
     letters = {
         "T": "T",

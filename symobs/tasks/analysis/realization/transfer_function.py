@@ -45,6 +45,7 @@ class TransferFunction(Result):
 
     task: ClassVar[str] = "transfer_function"
     answered_by = ("transfer_function",)
+    only_value = ("transfer_function",)
     letters = {"transfer_function": "P", "poles": "P"}
 
     def claims(self) -> Iterator[Claim]:

@@ -117,6 +117,7 @@ class Gramian(DampingCases):
 
     task: ClassVar[str] = "gramian"
     answered_by = ("matrix",)
+    only_value = ("matrix", "determinant")
     letters = {"matrix": "W", "determinant": "det W", "finite_sum": "M", "kernel": "N"}
     asked_for: ClassVar[tuple[str, ...]] = ("horizon",)
 

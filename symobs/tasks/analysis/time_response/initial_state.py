@@ -93,6 +93,7 @@ class InitialState(OfTheInitialState):
 
     task: ClassVar[str] = "initial_state"
     answered_by = ("x0",)
+    only_value = ("x0",)
     letters = {"x0": "x_0"}
     main: ClassVar[str] = "x0"
     asked_for: ClassVar[tuple[str, ...]] = ("output", "input", "horizon")

@@ -75,6 +75,7 @@ class InitialStateCovariance(OfTheInitialState):
 
     task: ClassVar[str] = "initial_state_covariance"
     answered_by = ("covariance",)
+    only_value = ("covariance",)
     letters = {"covariance": "Cov", "input_part": "Cov_Q", "output_part": "Cov_R"}
     main: ClassVar[str] = "covariance"
     asked_for: ClassVar[tuple[str, ...]] = ("Q", "R", "horizon")

@@ -92,6 +92,7 @@ class MatrixExponential(DampingCases):
 
     task: ClassVar[str] = "matrix_exponential"
     answered_by = ("matrix",)
+    only_value = ("matrix",)
     functions_of_time = {"exp(At)": "matrix"}
     letters = {"matrix": "exp_At"}
 

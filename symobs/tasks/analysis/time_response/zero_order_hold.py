@@ -59,6 +59,7 @@ class ZeroOrderHold(DampingCases):
     task: ClassVar[str] = "zero_order_hold"
     letters = {"A": "A_zoh", "B": "B_zoh"}
     answered_by = ("A", "B")
+    only_value = ("A", "B")
     main: ClassVar[str] = "A_d"
     asked_for: ClassVar[tuple[str, ...]] = ("horizon",)
 

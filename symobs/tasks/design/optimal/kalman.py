@@ -32,6 +32,7 @@ class OptimalFilter(OptimalGain):
 
     task: ClassVar[str] = "kalman"
     answered_by = ("L",)
+    only_value = ("L", "P")
     claimed = ("L",)
     letters = {"L": "L", "P": "P_x", "polynomial": "chi_L", "poles": "chi_L"}
     cards = ("L", "P", "polynomial")

@@ -27,6 +27,7 @@ class OptimalFeedback(OptimalGain):
 
     task: ClassVar[str] = "lqr"
     answered_by = ("K",)
+    only_value = ("K", "P")
     claimed = ("K",)
     letters = {"K": "K", "P": "P_x", "polynomial": "chi_K", "poles": "chi_K"}
     cards = ("K", "P", "polynomial")

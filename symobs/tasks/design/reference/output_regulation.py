@@ -102,6 +102,7 @@ class OutputRegulation(Result):
 
     task: ClassVar[str] = "output_regulation"
     answered_by = ("Pi", "Gamma", "K")
+    only_value = ("Pi", "Gamma")
     gains: ClassVar[tuple[str, ...]] = ("K",)
     claimed = ("Pi", "Gamma")
     letters: ClassVar[Mapping[str, str]] = {"Pi": "Pi_w", "Gamma": "Gamma_w", "K": "K", "F": "F_w"}
@@ -116,6 +117,11 @@ class OutputRegulation(Result):
         answer = solution(plant, exogenous, {})
         answer["blocked"] = _blocked(plant, exogenous.S)
         return cls(plant, method_name, answer | _law(loop, answer, q), exogenous, loop, estimator)
+
+    def has_one_value(self, name: str) -> bool:
+        """Whether Π and Γ are unique: no more inputs than outputs, and no eigenvalue of S is a zero of the plant."""
+        is_unique = self.answer["blocked"] == () and self.plant.inputs <= self.plant.outputs
+        return super().has_one_value(name) and is_unique
 
     def with_answer(self, name: str, value: object) -> Self:
         """Return the regulator with another K or L, or another Π (Γ) and the Γ (Π) that belongs to it."""
