@@ -23,7 +23,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError, UsageError, reason_of
 from symobs.pages.formats.html import HtmlWriter
 from symobs.pages.formats.markdown import Markdown, portable
-from symobs.pages.page.blocks import Display, Heading, Paragraph, Title
+from symobs.pages.page.blocks import CaseBlock, Display, Drawing, Heading, Paragraph, PictureBlock, Title
 from symobs.pages.page.narrator import narrate, printer_for
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.line_breaking import Layout
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from symobs.pages.page.blocks import Block, Inlines
     from symobs.problem.question import Question
     from symobs.tasks.design.gain.gain_design import GainDesign
+    from symobs.tasks.result import Document
     from symobs.tasks.result.in_convention import ResultInConvention
 
 
@@ -484,11 +485,47 @@ def question_markdown(exercise: Exercise) -> str:
 
 def question_xhtml(exercise: Exercise) -> str:
     """Return the question as well-formed XHTML, its formulas in MathML."""
-    document = _document(exercise)
-    body = HtmlWriter(printer_for(document, MathmlPrinter), prefix=None, level=3).body(narrate(document))
+    return _xhtml(_document(exercise))
+
+
+def solution_html(exercise: Exercise) -> str:
+    """Return the worked solution as HTML, its formulas in MathML; brackets that a platform would take for its own are apart."""
+    document = _solution(exercise)
+    return _body(document, narrate(document)).replace("[[", "[ [").replace("{{", "{ {").replace("{@", "{ @")
+
+
+def solution_xhtml(exercise: Exercise) -> str:
+    """Return the worked solution as well-formed XHTML without its pictures, its formulas in MathML."""
+    return _xhtml(_solution(exercise))
+
+
+def solution_markdown(exercise: Exercise) -> str:
+    """Return the worked solution as Markdown, its formulas in LaTeX between dollars."""
+    return Markdown().part(_solution(exercise)).strip()
+
+
+def _solution(exercise: Exercise) -> Document:
+    document = exercise.problem.document(exercise.checked.results)
+    return replace(document, title="", source="", text="", references="none")
+
+
+def _xhtml(document: Document) -> str:
+    body = _body(document, _without_pictures(narrate(document)))
     body = body.replace("<math", '<math xmlns="http://www.w3.org/1998/Math/MathML"')
     fromstring(f"<div>{body}</div>")  # noqa: S314 - our own text: it must be well formed
     return body
+
+
+def _body(document: Document, blocks: Sequence[Block]) -> str:
+    return HtmlWriter(printer_for(document, MathmlPrinter), prefix=None, level=3).body(blocks)
+
+
+def _without_pictures(blocks: Sequence[Block]) -> tuple[Block, ...]:
+    kept = (block for block in blocks if not isinstance(block, (Drawing, PictureBlock)))
+    return tuple(
+        replace(block, blocks=_without_pictures(block.blocks)) if isinstance(block, CaseBlock) else block
+        for block in kept
+    )
 
 
 def _document(exercise: Exercise) -> Question:

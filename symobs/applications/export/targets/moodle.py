@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 from typing import TYPE_CHECKING
 
-from symobs.applications.export.questions import instruction, label, matrix_text, plain, question_html
+from symobs.applications.export.questions import instruction, label, matrix_text, plain, question_html, solution_html
 from symobs.applications.export.targets.shared import refuse, terminating, unique_number
 from symobs.formula.phrases import PHRASES
 
@@ -56,6 +56,7 @@ def _question(exercise: Exercise) -> str:
         f"<p>{PHRASES['export_right']}: {label(part)} = <code>{escape(matrix_text(part))}</code></p>"
         for part in exercise.parts
     )
+    solution += f"\n{solution_html(exercise)}"
     return f"""<question type="cloze">
 <name><text>{xml_text(exercise.title)}</text></name>
 <questiontext format="html">{cdata(body)}</questiontext>

@@ -18,33 +18,64 @@ if TYPE_CHECKING:
     from symobs.applications.export.questions import Exercise, ExerciseSet, ExportedPart
     from symobs.applications.export.targets.shared import Files
 
-_TEST = """### BEGIN HIDDEN TESTS
+#: Marks the answers in a process of its own: what the notebook has done to its own modules does not count there.
+_MARKING = """import json
+import sys
 from dataclasses import replace
 
 import symobs
 from symobs.problem import read
 
-problem = read({text})
-problem = replace(problem, marking=replace(problem.marking, asked={asked}))
-found = {{part: globals().get(name) for part, name in {names}.items()}}
-answer = {{}}
-for part, value in found.items():
-    if value is not None and not (isinstance(value, str) and not value.strip()):
-        task, _, field = part.partition(".")
-        answer.setdefault(task, {{}})[field] = value
-missing = [name for part, name in {names}.items() if found[part] is None]
+given = json.load(sys.stdin)
+problem = read(given["problem"])
+problem = replace(problem, marking=replace(problem.marking, asked=tuple(given["asked"])))
+marks, answer = 0.0, given["answer"]
 try:
     report = symobs.check(problem, answer) if answer else None
     print(report.to_text() if report else "nothing is assigned")
-    marks = report.score / report.total if report and report.score is not None else None if report else 0
+    if report:
+        marks = None if report.score is None else float(report.score / report.total * given["points"])
+    print(*(result.to("text") for result in problem.solve()), sep="\\n")
 except symobs.SymobsError as error:
     print(error)
-    marks = 0
+print(json.dumps(marks))
+"""
+_TEST = """### BEGIN HIDDEN TESTS
+import sys
+
+for name in ("json", "subprocess"):
+    sys.modules.pop(name, None)
+import json
+import subprocess
+
+
+def plain(value):
+    value = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(value, (list, tuple)):
+        return [plain(entry) for entry in value]
+    return value if isinstance(value, (str, int, float)) else str(value)
+
+
+given = {{"problem": {text}, "asked": {asked}, "points": {points}, "answer": {{}}}}
+found = {{part: globals().get(name) for part, name in {names}.items()}}
+for part, value in found.items():
+    if value is not None and not (isinstance(value, str) and not value.strip()):
+        task, _, field = part.partition(".")
+        given["answer"].setdefault(task, {{}})[field] = plain(value)
+marking = {marking}
+run = subprocess.run(
+    [sys.executable, "-P", "-c", marking], input=json.dumps(given), capture_output=True, text=True, timeout=600
+)
+if run.returncode:
+    raise RuntimeError(run.stderr)
+said, _, marks = run.stdout.rstrip().rpartition("\\n")
+print(said)
+missing = [name for part, name in {names}.items() if found[part] is None]
 if missing:
     print("missing:", ", ".join(missing))
-if marks is None:
+if json.loads(marks) is None:
     raise RuntimeError("undecided: this answer is to be marked by hand")
-float(marks * {points})
+json.loads(marks)
 ### END HIDDEN TESTS"""
 
 
@@ -79,8 +110,9 @@ def _notebook(exercise: Exercise) -> dict[str, Any]:
     solution = "\n".join(["### BEGIN SOLUTION", *examples, "### END SOLUTION"])
     test = _TEST.format(
         text=_literal(exercise.problem_text),
-        asked=repr(tuple(part.part for part in exercise.parts)),
+        asked=repr([part.part for part in exercise.parts]),
         names=repr(names),
+        marking=_literal(_MARKING),
         points=repr(float(total_of(exercise))),
     )
     identifier = exercise.identifier

@@ -6,7 +6,7 @@ import uuid
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.export.questions import instruction, label, matrix_text, question_html
+from symobs.applications.export.questions import instruction, label, matrix_text, question_html, solution_html
 from symobs.applications.export.targets.shared import CLAIMS, as_json, claims_module
 from symobs.formula.phrases import PHRASES
 
@@ -122,7 +122,11 @@ def _variant(exercise: Exercise) -> dict[str, Any]:
     right = {part.name: matrix_text(part) for part in exercise.parts}
     return {
         "id": exercise.identifier,
-        "params": {"question": question_html(exercise, dollars=True), "right": right},
+        "params": {
+            "question": question_html(exercise, dollars=True),
+            "right": right,
+            "solution": solution_html(exercise),
+        },
         "question": {**exercise.question, "parts": parts},
         "inputs": [
             {
@@ -164,7 +168,7 @@ def _page(exercise: Exercise) -> str:
     )
     return (
         f"<pl-question-panel>\n{{{{{{params.question}}}}}}\n{inputs}\n</pl-question-panel>\n"
-        f"<pl-submission-panel>\n{said}\n</pl-submission-panel>\n<pl-answer-panel>\n{right}\n</pl-answer-panel>\n"
+        f"<pl-submission-panel>\n{said}\n</pl-submission-panel>\n<pl-answer-panel>\n{right}\n{{{{{{params.solution}}}}}}\n</pl-answer-panel>\n"
     )
 
 

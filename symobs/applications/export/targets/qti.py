@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, fromstring, indent, tostring
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
-from symobs.applications.export.questions import instruction, label, plain, question_xhtml, texts, total_of
+from symobs.applications.export.questions import (
+    instruction,
+    label,
+    plain,
+    question_xhtml,
+    solution_xhtml,
+    texts,
+    total_of,
+)
 from symobs.applications.export.targets.shared import refuse, terminating, unique_number
 from symobs.exact import Matrix, Scalar
 from symobs.formula.expression import parse_scalar
@@ -113,8 +121,9 @@ def _item(exercise: Exercise, name: str) -> Element:
         declared = SubElement(item, "qti-outcome-declaration", _variable(identifier, "float"))
         SubElement(SubElement(declared, "qti-default-value"), "qti-value").text = _decimal(share)
     SubElement(item, "qti-outcome-declaration", _variable("FEEDBACK", "identifier"))
+    SubElement(item, "qti-outcome-declaration", _variable("SOLUTION", "identifier"))
     body = SubElement(item, "qti-item-body")
-    body.append(fromstring(f"<div>{question_xhtml(exercise)}</div>"))  # noqa: S314 - our own text
+    body.append(_division(question_xhtml(exercise)))
     SubElement(body, "p").text = _data(exercise)
     for _, part, names in inputs:
         _write_input(body, part, names)
@@ -122,7 +131,23 @@ def _item(exercise: Exercise, name: str) -> Element:
     for k, part, names in inputs:
         _judge(processing, exercise, part, k, [identifier for identifier, _ in names])
     _score(processing, exercise, total, [k for k, _, _ in inputs])
+    _set(processing, "SOLUTION", "identifier", "shown")
+    shown = {"outcome-identifier": "SOLUTION", "show-hide": "show", "identifier": "shown"}
+    feedback = SubElement(item, "qti-modal-feedback", shown)
+    SubElement(feedback, "qti-content-body").append(_division(solution_xhtml(exercise)))
     return item
+
+
+def _division(xhtml: str) -> Element:
+    """Return XHTML as an element; the rows of a table stand in a body, which QTI demands."""
+    found = fromstring(f"<div>{xhtml}</div>")  # noqa: S314 - our own text
+    for table in found.iter("table"):
+        rows = table.findall("tr")
+        for row in rows:
+            table.remove(row)
+        if rows:
+            SubElement(table, "tbody").extend(rows)
+    return found
 
 
 def _data(exercise: Exercise) -> str:
@@ -164,8 +189,9 @@ def _write_input(body: Element, part: ExportedPart, names: Sequence[tuple[str, s
     rows, columns = part.shape
     table = SubElement(body, "table")
     SubElement(table, "caption").text = label(part, "", "")
+    body_of_table = SubElement(table, "tbody")
     for i in range(rows):
-        row = SubElement(table, "tr")
+        row = SubElement(body_of_table, "tr")
         for identifier, _ in names[columns * i : columns * (i + 1)]:
             interaction = {"response-identifier": identifier, "expected-length": "10"}
             SubElement(SubElement(row, "td"), "qti-text-entry-interaction", interaction)
@@ -270,6 +296,9 @@ def _decimal(value: Fraction) -> str:
 
 def _as_text(item: Element, version: str) -> str:
     if version == "2.1":
+        for feedback in item.findall("qti-modal-feedback"):  # what 3.0 wraps once more stands in it there
+            (wrapped,) = feedback
+            feedback[:] = list(wrapped)
         for element in item.iter():
             if element.tag.startswith("qti-"):
                 element.tag = _camel(element.tag.removeprefix("qti-"))

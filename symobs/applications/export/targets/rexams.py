@@ -5,7 +5,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from symobs.applications.export.questions import instruction, label, matrix_text, plain, question_markdown
+from symobs.applications.export.questions import (
+    instruction,
+    label,
+    matrix_text,
+    plain,
+    question_markdown,
+    solution_markdown,
+)
 from symobs.applications.export.targets.shared import refuse, terminating, unique_number
 from symobs.formula.phrases import PHRASES
 
@@ -67,7 +74,7 @@ def _file(exercise: Exercise, name: str) -> str:
         "Answerlist\n----------",
         "\n".join(f"* {text}" for _, _, texts in gaps for text in texts),
         "Solution\n========",
-        _kept_from_r(f"{PHRASES['export_right']}: {'; '.join(right)}."),
+        _kept_from_r(f"{PHRASES['export_right']}: {'; '.join(right)}.\n\n{solution_markdown(exercise)}"),
         "Meta-information\n================",
         "\n".join(f"{key}: {value}" for key, value in meta.items()),
     ]

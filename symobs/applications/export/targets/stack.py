@@ -8,7 +8,7 @@ from html import escape
 from string import Template
 from typing import TYPE_CHECKING, Any
 
-from symobs.applications.export.questions import ExerciseSet, instruction, label, question_html, total_of
+from symobs.applications.export.questions import ExerciseSet, instruction, label, question_html, solution_html, total_of
 from symobs.applications.export.targets.moodle import category, cdata, quiz, xml_text
 from symobs.applications.export.targets.shared import refuse, terminating
 from symobs.exact import Scalar
@@ -314,12 +314,12 @@ def _question(each: ExerciseSet) -> str:
     parts = each.first.parts
     body = [_by_variant([question_html(exercise) for exercise in each.variants])]
     body += [_input_text(part, k) for k, part in enumerate(parts, 1)]
-    page = cdata("\n".join(body))
+    page, solution = cdata("\n".join(body)), cdata(_by_variant([solution_html(exercise) for exercise in each.variants]))
     feedback = "\n".join(f"<div>[[feedback:prt{k}]]</div>" for k in range(1, len(parts) + 1))
     pieces = [
         f'<question type="stack">\n<name><text>{xml_text(each.first.title)}</text></name>',
         f'<questiontext format="html">{page}</questiontext>',
-        '<generalfeedback format="html"><text></text></generalfeedback>',
+        f'<generalfeedback format="html">{solution}</generalfeedback>',
         f"<defaultgrade>{float(total_of(each.first)):g}</defaultgrade>\n<penalty>0</penalty>\n<hidden>0</hidden>",
         f"<idnumber>{each.identifier}</idnumber>",
         f"<stackversion><text>{VERSION}</text></stackversion>",
