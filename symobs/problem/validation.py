@@ -225,7 +225,7 @@ def _meant_to_be_declared(data: Mapping[str, Any]) -> tuple[set[str], list[str]]
 def _rounded(plant: Any) -> StateSpace:
     """Return a plant, or that of the task which finds it, as one whose page says that its data are rounded."""
     found = plant.as_plant if isinstance(plant, Result) else plant
-    assert isinstance(found, StateSpace)
+    assert isinstance(found, StateSpace)  # noqa: S101 - only a task that finds a plant hands one on
     return found.with_rounding()
 
 
