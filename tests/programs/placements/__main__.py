@@ -20,7 +20,7 @@ from statistics import median
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from scipy.signal import place_poles
+from scipy.signal import place_poles  # type: ignore[import-untyped]
 
 import symobs
 from tests.kit import tables
@@ -124,8 +124,20 @@ def measured(problem: Problem, choose: str) -> Measured:
     fed = [[sum(b * k for b, k in zip(row, column, strict=True)) for column in zip(*K, strict=True)] for row in B]
     closed = [[a - f for a, f in zip(left, right, strict=True)] for left, right in zip(A, fed, strict=True)]
     assert characteristic_polynomial(closed) == polynomial_with(problem.poles), problem
-    vectors = np.linalg.eig(np.array(closed, dtype=float))[1]
-    return Measured(float(max(abs(k) for row in K for k in row)), float(np.linalg.cond(vectors)), seconds)
+    condition = condition_with(np.array(closed, dtype=float), problem.numbers[2])
+    return Measured(float(max(abs(k) for row in K for k in row)), condition, seconds)
+
+
+def condition_with(closed: Any, poles: list[complex]) -> float:
+    """Return the condition of the eigenvectors, orthogonal ones for a repeated pole; infinite where there are too few."""
+    spaces = []
+    for pole in dict.fromkeys(poles):
+        _, sizes, rows = np.linalg.svd(closed - pole * np.eye(len(closed)))
+        count = poles.count(pole)
+        if sizes[-count] > 1e-6 * (1 + sizes[0]):
+            return float("inf")
+        spaces.append(rows[-count:].conj().T)
+    return float(np.linalg.cond(np.hstack(spaces)))
 
 
 def characteristic_polynomial(A: list[list[Fraction]]) -> list[Fraction]:
@@ -136,7 +148,7 @@ def characteristic_polynomial(A: list[list[Fraction]]) -> list[Fraction]:
     last = Fraction(1)
     for k in range(1, n + 1):
         M = [[sum(A[i][l] * M[l][j] for l in range(n)) + last * (i == j) for j in range(n)] for i in range(n)]
-        last = -sum(A[i][l] * M[l][i] for i in range(n) for l in range(n)) / k
+        last = -sum((A[i][l] * M[l][i] for i in range(n) for l in range(n)), start=Fraction(0)) / k
         found.append(last)
     return found
 

@@ -370,9 +370,8 @@ def write_gain_of_both(page: Builder, design: DisturbanceObserver) -> None:
             _zeros(page, design)
             return
         page.conclude("disturbance_fixed", predicate("polynomial", page["phi_o / det(pencil(X))"]), modes=roots)
-    terms = small_gain_terms(page, design.inner, OBSERVER, A, C)
-    say = "small_follows" if terms else "disturbance_gain"
-    L = define_gain(page, "L", *terms, design.inner.answer["L"], say=say)
+    terms, say = small_gain_terms(page, design.inner, OBSERVER, A, C)
+    L = define_gain(page, "L", *terms, design.inner.answer["L"], say=say or "disturbance_gain")
     compare_with_simple(page, design.inner, OBSERVER, A, C)
     pencil = page("det(pencil(A_hat) + {L} C_hat)", L=L)
     say_as_required(page, design.desired, pencil, page.value(design.desired.polynomial))

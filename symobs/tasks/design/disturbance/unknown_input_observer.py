@@ -465,8 +465,8 @@ def _gain(page: Builder, design: UnknownInputObserver) -> None:
     """Write L, F = T A − L C, and what multiplies y in the equation of z."""
     assert design.inner is not None  # noqa: S101 - there is a gain
     whole = page["A_T"], page["C"]
-    terms = small_gain_terms(page, design.inner, OBSERVER, *whole)
-    L = define_gain(page, "L", *terms, design.answer["L"], say="small_follows" if terms else "uio_gain")
+    terms, say = small_gain_terms(page, design.inner, OBSERVER, *whole)
+    L = define_gain(page, "L", *terms, design.answer["L"], say=say or "uio_gain")
     compare_with_simple(page, design.inner, OBSERVER, *whole)
     state = page("A_T - {L} C", L=L)
     driven = L + state @ page["H_d"]

@@ -124,7 +124,7 @@ class GainDesign(Result):
         if gain is None:
             return cls._of_kind(plant, method_name, UnassignableGain(desired), pair, None)
         if (small := small_gain(pair, desired, gain)) is not None:
-            return cls._of_kind(plant, method_name, SmallGain(desired, gain), pair, small)
+            return cls._of_kind(plant, method_name, SmallGain(desired, gain, small.vectors), pair, small.gain)
         return cls._of_kind(plant, method_name, AssignedGain(desired), pair, gain)
 
     @classmethod

@@ -38,8 +38,11 @@ if TYPE_CHECKING:
 def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write the equation, its solution, and for several outputs (inputs) the family and one member of it."""
     chart = design.chart
-    if design.page_method != "sylvester" and (terms := small_gain_terms(page, design, side, *_pair(page, side))):
-        define_gain(page, side.gain, *terms, say="small_follows")
+    terms, say = (
+        small_gain_terms(page, design, side, *_pair(page, side)) if design.page_method != "sylvester" else ([], "")
+    )
+    if terms:
+        define_gain(page, side.gain, *terms, say=say)
         compare_with_simple(page, design, side, *_pair(page, side))
         page.remark(f"others_{side.kind}", count=str(_freedom(design)))
         return
@@ -63,6 +66,7 @@ def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, d
     own = chart.own_G
     if own is None:
         say = f"alone_decoupled_{side.kind}" if design.decoupled else "no_member"
+        say = "small_alone" if isinstance(design.kind, SmallGain) else say
         define_gain(page, side.gain, design.answer[side.gain], say=say)
         return
     words = f"decoupled_{side.kind}" if design.decoupled else "zero" if design.zero else "several"

@@ -35,6 +35,11 @@ PHRASES: dict[str, str] = {
     "small_chosen_state_feedback": "Several gains place these poles. We choose one with small entries, near the placement whose eigenvectors are best conditioned§. All of its rows but one are fixed at short numbers:",
     "small_left_observer": "The remaining column is the gain of the plant with a single output",
     "small_left_state_feedback": "The remaining row is the gain of the plant with a single input",
+    "small_directions_observer": "Several gains place these poles. We choose one with small entries, near the placement whose eigenvectors are best conditioned§: its transpose maps the columns of $Psi_o$, whose free components are short, to those of",
+    "small_directions_state_feedback": "Several gains place these poles. We choose one with small entries, near the placement whose eigenvectors are best conditioned§: it maps the columns of $Psi_c$, whose free components are short, to those of",
+    "small_solved": "where these columns solve an equation whose last matrix has the desired poles as eigenvalues:",
+    "small_vectors_follow": "The gain is therefore",
+    "small_alone": "A gain with small entries, near the placement whose eigenvectors are best conditioned§, is",
     "small_follows": "It is unique, and Ackermann's formula§ gives",
     "small_instead_observer": "An observer gain found without regard to size, in contrast, has an entry whose absolute value is at least {bound}.",
     "small_instead_state_feedback": "A feedback gain found without regard to size, in contrast, has an entry whose absolute value is at least {bound}.",
@@ -87,6 +92,9 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 RESTS_ON: dict[str, str] = {
     "member_small": "conditioned",
     "small_chosen_observer": "conditioned",
+    "small_directions_observer": "conditioned",
+    "small_directions_state_feedback": "conditioned",
+    "small_alone": "conditioned",
     "small_chosen_state_feedback": "conditioned",
     "small_follows": "ackermann",
     "sylvester_observer": "sylvester",
@@ -103,6 +111,7 @@ NAMING = ("impossible_zero_unless",)
 #: Phrases that go on with the sentence before them.
 CONTINUES = (
     "determinant_free",
+    "small_solved",
     "solution_long",
     "solution_of_member",
 )

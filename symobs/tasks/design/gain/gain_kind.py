@@ -36,13 +36,14 @@ class AssignedGain:
 
 @dataclass
 class SmallGain:
-    """A gain that assigns φ near the best conditioned placement, and the simple one in whose place it was taken.
+    """A gain that assigns φ near the best conditioned placement, and the simple one L in whose place it was taken.
 
-    That one is a gain of the observer problem.
+    `vectors` are Ψ, f = LᵀΨ and J with (A − L C)ᵀ Ψ = Ψ J where it was found by them.  All are of the observer problem.
     """
 
     desired: DesiredPolynomial
     simple: Matrix
+    vectors: tuple[Matrix, Matrix, Matrix] | None = None
 
     zero: ClassVar[Places] = ()
     exists: ClassVar[bool] = True

@@ -23,16 +23,45 @@ if TYPE_CHECKING:
 _DIGITS = 2
 
 
-def small_gain_terms(page: Builder, design: GainDesign, side: PlacementProblem, A: Term, moved: Term) -> list[Term]:
-    """Write the rows of K (columns of L) that are chosen, and the plant that is left; return how the gain follows.
+def small_gain_terms(
+    page: Builder, design: GainDesign, side: PlacementProblem, A: Term, moved: Term
+) -> tuple[list[Term], str]:
+    """Write the part of K (of L) that is chosen, and what is left; return the rest of the gain's definition and its words.
 
-    A and `moved` are the terms of A and of B or C for which the design is one.  Nothing is written, and the list is empty,
-    where the gain was not searched for, or no input (output) alone makes the rest of it.
+    A and `moved` are the terms of A and of B or C for which the design is one.  Nothing is written or returned where the
+    gain was not searched for, or has become another one.
     """
     _say_why_simple(page, design, side, moved)
-    left = _left(design) if isinstance(design.kind, SmallGain) else None
-    if left is None:
-        return []
+    if not isinstance(design.kind, SmallGain):
+        return [], ""
+    L, vectors = design.transpose_for_task(design.answer[design.letter]), design.kind.vectors
+    if vectors is not None:
+        Psi, f, _ = vectors
+        found = Psi.T.solve(f.T).normal()
+        return (_by_eigenvectors(page, side, A, moved, vectors), "small_vectors_follow") if found == L else ([], "")
+    left = _left(design, L)
+    return ([], "") if left is None else ([_by_one_column(page, design, side, A, moved, left)], "small_follows")
+
+
+def _by_eigenvectors(
+    page: Builder, side: PlacementProblem, A: Term, moved: Term, vectors: tuple[Matrix, Matrix, Matrix]
+) -> list[Term]:
+    """Write f and the eigenvectors Ψ, and return f Ψ⁻¹."""
+    Psi, f, J = vectors
+    right, left = (
+        page.define(f"f_{side.index}", f, say=f"small_directions_{side.kind}"),
+        page.set(f"Psi_{side.index}", Psi),
+    )
+    A, driven = (A.T, moved.T) if side.is_dual else (A, moved)
+    page.equal(relation(left, Psi), relation(A @ left - driven @ right, left @ page.value(J)), say="small_solved")
+    gain = right @ left.inverse
+    return [gain.T if side.is_dual else gain]
+
+
+def _by_one_column(
+    page: Builder, design: GainDesign, side: PlacementProblem, A: Term, moved: Term, left: tuple[int, Matrix]
+) -> Term:
+    """Write the columns of L but one and the plant with the output of that one, and return how the gain follows."""
     output, L_0 = left
     order, index = A.value.shape[0], side.index
     unit, last = page.value(Matrix.unit(design.pair.c.shape[0], output)), page.value(Matrix.unit(order, order - 1))
@@ -41,11 +70,11 @@ def small_gain_terms(page: Builder, design: GainDesign, side: PlacementProblem, 
         shifted = page.define(f"A_{index}0", A - chosen @ moved, say="small_left_observer")
         row = page.define("c_o", unit.T @ moved)
         stack = block([[row @ shifted**k if k else row] for k in range(order)])
-        return [chosen + shifted.apply("phi_o_at") @ stack.inverse @ last @ unit.T]
+        return chosen + shifted.apply("phi_o_at") @ stack.inverse @ last @ unit.T
     shifted = page.define(f"A_{index}0", A - moved @ chosen, say="small_left_state_feedback")
     column = page.define("b_c", moved @ unit)
     stack = block([[shifted**k @ column if k else column for k in range(order)]])
-    return [chosen + unit @ last.T @ stack.inverse @ shifted.apply("phi_c_at")]
+    return chosen + unit @ last.T @ stack.inverse @ shifted.apply("phi_c_at")
 
 
 def compare_with_simple(page: Builder, design: GainDesign, side: PlacementProblem, A: Term, moved: Term) -> None:
@@ -61,10 +90,9 @@ def compare_with_simple(page: Builder, design: GainDesign, side: PlacementProble
         page.remark(f"small_instead_{side.kind}", bound=page.term(Decimals(Scalar.of(bound))))
 
 
-def _left(design: GainDesign) -> tuple[int, Matrix] | None:
+def _left(design: GainDesign, L: Matrix) -> tuple[int, Matrix] | None:
     """Return an output whose column of L is determined by the others, which have short numbers, and L without it."""
-    pair, L = design.pair, design.transpose_for_task(design.answer[design.letter])
-    order, outputs = L.shape
+    pair, (order, outputs) = design.pair, L.shape
     parts = [(L.select(range(order), [output]), output) for output in range(outputs)]
     for column, output in sorted(parts, key=lambda part: cost(part[0]), reverse=True):
         L_0 = (L - column @ Matrix.unit(outputs, output).T).normal()

@@ -30,13 +30,17 @@ GROWTH = 1e-3
 ALIKE = 1.1
 #: An input that adds less to the rank of B counts as none, and less independent eigenvectors are given up.
 NEGLIGIBLE = 1e-12
+#: Vectors that a matrix moves farther from their multiples, beside its norm, are no eigenvectors.
+DEFECT = 1e-7
 
 
 class Placement(NamedTuple):
-    """A gain K, and the condition ‖X‖ ‖X⁻¹‖ of the eigenvectors of A − B K."""
+    """A gain K, the condition ‖X‖ ‖X⁻¹‖ of the eigenvectors of A − B K, these as columns, and the poles they are for."""
 
     gain: Reals
     condition: float
+    vectors: Vectors
+    poles: Sequence[complex]
 
     @property
     def largest(self) -> float:
@@ -63,9 +67,16 @@ def best_conditioned(A: Reals, B: Reals, poles: Sequence[complex]) -> Placement 
     return min(alike, key=lambda placement: placement.largest, default=None)
 
 
-def condition_of(closed: Reals) -> float:
-    """Return the condition of the eigenvectors of a matrix, each of length one."""
-    return float(np.linalg.cond(np.linalg.eig(closed)[1]))
+def condition_of(closed: Reals, poles: Sequence[complex]) -> float:
+    """Return the condition of the eigenvectors of a matrix, each of length one; to a repeated pole belong orthogonal ones."""
+    if len(set(poles)) == len(poles):
+        return float(np.linalg.cond(np.linalg.eig(closed)[1]))
+    eye = np.eye(len(closed))
+    found = [_kernel(closed - pole * eye, poles.count(pole)) for pole in dict.fromkeys(poles)]
+    X = np.column_stack(found)
+    moved = np.column_stack([space * pole for space, pole in zip(found, dict.fromkeys(poles), strict=True)])
+    is_basis = np.linalg.norm(closed @ X - moved) <= DEFECT * (1 + np.linalg.norm(closed))
+    return float(np.linalg.cond(X)) if is_basis else float("inf")
 
 
 def _kernel(M: Vectors, dimension: int) -> Vectors:
@@ -133,8 +144,9 @@ def _placement(
     """Return the gain with B K = A − X J X⁻¹."""
     X, moved = _columns(vectors), _columns([x * pole for x, pole in zip(vectors, _as_kinds(poles), strict=True)])
     gain = np.linalg.lstsq(B, A - moved @ np.linalg.inv(X), rcond=None)[0]
-    every = [y for x in vectors for y in ((x, x.conj()) if np.iscomplexobj(x) else (x,))]
-    return Placement(gain, float(np.linalg.cond(np.column_stack(every))))
+    every = np.column_stack([y for x in vectors for y in ((x, x.conj()) if np.iscomplexobj(x) else (x,))])
+    placed = [y for pole in poles for y in ((pole, pole.conjugate()) if pole.imag else (pole,))]
+    return Placement(gain, float(np.linalg.cond(every)), every, placed)
 
 
 def _as_kinds(poles: Sequence[complex]) -> list[complex]:

@@ -292,8 +292,8 @@ def write_inner_gain(page: Builder, design: ReducedOrderObserver) -> None:
     if not design.inner.fixed_polynomial.is_one:
         _say_fixed_modes(page, design)
     rest = page["A_22"], page["A_12"]
-    terms = small_gain_terms(page, design.inner, OBSERVER, *rest)
-    key = "small_follows" if terms else "one_of_several" if several else "hence_gain"
+    terms, say = small_gain_terms(page, design.inner, OBSERVER, *rest)
+    key = say or ("one_of_several" if several else "hence_gain")
     key = key if design.inner.fixed_polynomial.is_one else ""
     define_gain(page, "L", *terms, design.answer["L"], say=key)
     compare_with_simple(page, design.inner, OBSERVER, *rest)

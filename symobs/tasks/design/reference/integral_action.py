@@ -431,9 +431,8 @@ def _gains(page: Builder, design: IntegralAction) -> None:
     _K, _k_I = page.set("K", design.answer["K"]), page.set("k_I", design.answer["k_I"])
     both, whole = page["[K, -k_I]"], (page["A_hat"], page["B_hat"])
     compared = plant.inputs == 1 and design.fields["family"] is None and _compare(page, gain, design.desired)
-    terms = small_gain_terms(page, design.loop, FEEDBACK, *whole)
-    say = "small_follows" if terms else "hence_gain" if compared else "integral_gains"
-    page.equal(relation(both, *terms, gain), say=say)
+    terms, say = small_gain_terms(page, design.loop, FEEDBACK, *whole)
+    page.equal(relation(both, *terms, gain), say=say or ("hence_gain" if compared else "integral_gains"))
     compare_with_simple(page, design.loop, FEEDBACK, *whole)
     page.equal("K = #", say="integral_parts", answer=True)
     page.equal("k_I = #", answer=True)
