@@ -178,6 +178,7 @@ def compensator(
     K: _Matrix | None = None,
     L: _Matrix | None = None,
     observer: str = "full",
+    choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _CompensatorResult:
@@ -292,6 +293,7 @@ def disturbance_observer(
     V: _Matrix | None = None,
     poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
+    choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _DisturbanceObserverResult:
@@ -353,6 +355,7 @@ def feedforward(
     observer_polynomial: str | Expr | None = None,
     K: _Matrix | None = None,
     observer: str = "full",
+    choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _FeedforwardResult:
@@ -453,6 +456,7 @@ def integral_action(
     *,
     poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
+    choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _IntegralActionResult:
@@ -677,6 +681,7 @@ def observer(
     L: _Matrix | None = None,
     zero: str | Sequence[object] | None = None,
     member: str = "simple",
+    choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _ObserverResult:
@@ -717,6 +722,7 @@ def output_regulation(
     K: _Matrix | None = None,
     observer_poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     observer_polynomial: str | Expr | None = None,
+    choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _OutputRegulationResult:
@@ -800,6 +806,7 @@ def reduced_order_observer(
     poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
     T: _Matrix | None = None,
+    choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _ReducedOrderObserverResult:
@@ -917,6 +924,7 @@ def state_feedback(
     K: _Matrix | None = None,
     zero: str | Sequence[object] | None = None,
     member: str = "simple",
+    choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _StateFeedbackResult:
@@ -979,6 +987,7 @@ def tracking(
     reference_matrix: _Matrix | None = None,
     reference_start: _Matrix | None = None,
     observer: str = "minimal",
+    choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _TrackingResult:
@@ -1038,6 +1047,7 @@ def unknown_input_observer(
     E: _Matrix | None = None,
     poles: str | Sequence[_Number] | Mapping[str, Any] | MatrixBase | None = None,
     polynomial: str | Expr | None = None,
+    choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
 ) -> _UnknownInputObserverResult:

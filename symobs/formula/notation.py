@@ -266,6 +266,14 @@ LETTERS: dict[str, LetterForm] = {
     "K_G": LetterForm("K(G)", "K(G)", "general state feedback gain"),
     "L_0": LetterForm("L_0", "L₀", "gain by which the plant is shifted"),
     "K_0": LetterForm("K_0", "K₀", "gain by which the plant is shifted"),
+    "L_s": LetterForm(r"L_{\mathrm s}", "L_s", "observer gain with simple entries"),
+    "K_s": LetterForm(r"K_{\mathrm s}", "K_s", "state feedback gain with simple entries"),
+    **{f"Psi_{k}": LetterForm(rf"\Psi_{{\mathrm {k}}}", f"Ψ_{k}", "eigenvectors of the closed loop") for k in "co"},
+    **{
+        f"f_{k}": LetterForm(rf"f_{{\mathrm {k}}}", f"f_{k}", "images of the eigenvectors under the gain") for k in "co"
+    },
+    "b_c": LetterForm(r"b_{\mathrm c}", "b_c", "column of the input that is left"),
+    "c_o": LetterForm(r"c_{\mathrm o}", "c_o", "row of the output that is left"),
     **{f"A_{side}0": LetterForm(rf"A_{{\mathrm {side}0}}", f"A_{side}₀", "shifted state matrix") for side in "co"},
     "x_1": LetterForm("x_1", "x₁", "measured states"),
     **{f"x_hat_{k}": LetterForm(rf"\hat x_{k}", f"x̂{'₀₁₂'[k]}", "component of the estimate") for k in (1, 2)},

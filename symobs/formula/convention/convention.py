@@ -90,8 +90,8 @@ def of_determinant(gramian: LetterForm) -> dict[str, LetterForm]:
 
 
 #: The letters whose meaning changes its sign with the control law, and those with the observer matrix.
-FEEDBACK_GAINS = frozenset({"K", "K_1", "K_2", "K_0", "K_G", "K_y", "K_r"})
-OBSERVER_GAINS = frozenset({"L", "L_0", "L_G", "L_r"})
+FEEDBACK_GAINS = frozenset({"K", "K_1", "K_2", "K_0", "K_s", "K_G", "K_y", "K_r"})
+OBSERVER_GAINS = frozenset({"L", "L_0", "L_s", "L_G", "L_r"})
 #: Letters that a page has only where it speaks of an observer whose state is no estimate of x, of reduced order mostly.
 OF_REDUCED_ORDER = frozenset({"F_z", "G_z", "H_z", "M_z", "A_12", "H_d"})
 

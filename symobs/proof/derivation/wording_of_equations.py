@@ -261,6 +261,11 @@ def exceeds(said: SentenceContext, *names: str) -> bool:
     return any(excess(problem, P, gain, unit) == told for problem, P, gain in _rounded_optima(said, unit, names))
 
 
+def reaches(said: SentenceContext, of: str) -> bool:
+    """Return whether an entry of a matrix has at least the absolute value told."""
+    return any(abs(entry.fraction()) >= _told_number(said, "bound") for entry in said.environment.values[of].entries)  # type: ignore[union-attr]
+
+
 def splits(said: SentenceContext, even: str, of: str) -> bool:
     """Return whether a polynomial is that of the stable monic p times its mirror image, up to a number."""
     here, v = said.environment, said.environment.variable

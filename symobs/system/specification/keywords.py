@@ -123,6 +123,7 @@ KINDS: dict[str, dict[str, Any]] = {
 
 #: The words a keyword of the kind Name may be; those of `method` are the task's methods.
 CHOICES: dict[str, tuple[str, ...]] = {
+    "choose": ("simple", "small"),
     "kind": ("controllable", "observable", "modal"),
     "meaning": ("asymptotic", "lyapunov"),
     "member": ("simple", "decoupled"),
@@ -140,6 +141,8 @@ class DesiredPolynomial:
     poles: tuple[Complex, ...] = ()
     #: What the poles are to do, where they are given so.
     pattern: PolePattern | None = None
+    #: Which gain is to be taken where several assign φ: the `simple` one, a `small` one, or by `auto` what is usable.
+    choose: str = "auto"
 
     @cached_property
     def polynomial(self) -> Scalar:
@@ -176,7 +179,8 @@ class DesiredPolynomial:
     def substitute(self, values: dict[str, Scalar]) -> DesiredPolynomial:
         """Return φ with parameters substituted."""
         poles = tuple(Complex(p.real.substitute(values), p.imaginary.substitute(values)) for p in self.poles)
-        return DesiredPolynomial(self.variable, tuple(f.substitute(values) for f in self.factors), poles)
+        factors = tuple(f.substitute(values) for f in self.factors)
+        return DesiredPolynomial(self.variable, factors, poles, choose=self.choose)
 
 
 def desired_polynomial(
@@ -187,12 +191,16 @@ def desired_polynomial(
     names: tuple[str, str] = ("poles", "polynomial"),
     degree: int | None = None,
     required: bool = True,
+    choose: str = "auto",
 ) -> DesiredPolynomial | None:
     """Return φ read from `poles` or from `polynomial`, exactly one of which must be given.
 
     Raises `InputError` where the degree is not the order asked for, where poles of a real design are not closed under
-    conjugation (naming the missing one), or where the polynomial is not monic.
+    conjugation (naming the missing one), where the polynomial is not monic, or for a choice of gain that has no such name.
     """
+    if choose not in ("auto", *CHOICES["choose"]):
+        message = f"{choose[:40]!r} is no choice of a gain"
+        raise InputError(message, where="specification.choose", repair='write "simple" or "small"')
     degree = plant.order if degree is None else degree
     first, second = (f"specification.{name}" for name in names)
     if poles is None and polynomial is None:
@@ -214,7 +222,7 @@ def desired_polynomial(
     else:
         found = _from_polynomial(polynomial, plant, degree, second)
     require_known(found.factors, plant.symbols.signs, second if poles is None else first)
-    return found
+    return found if choose == "auto" else replace(found, choose=choose)
 
 
 def read_poles(

@@ -26,7 +26,8 @@ from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import half_of, places_where
 from symobs.tasks.design.gain.gain_design import letters_of
 from symobs.tasks.design.reduced_order.reduced_order_observer import completed
-from symobs.tasks.result import Result, choose, equality, method, poles_of, task
+from symobs.tasks.result import Result, equality, method, poles_of, task
+from symobs.tasks.result import choose as choose_method
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -243,6 +244,7 @@ def compensator(
     K: GainText = None,
     L: GainText = None,
     observer: Name = "full",
+    choose: Name = "auto",
     method: Name = "auto",
 ) -> Result:
     """Design the observer-based compensator U = −F(s) Y, with an observer of full order n or of minimal order n − p.
@@ -257,6 +259,8 @@ def compensator(
     K, L                                    given gains (m×n, n×p) instead of poles, from LQR, a Kalman filter or
                                             anywhere; the poles are found, an unstable loop is cautioned against
     observer                                `full` or `minimal`; there L cannot be given
+    choose                                  which gains of several inputs or outputs: "simple" or "small", as for
+                                            `state_feedback`
     Returns K, L, F, F_stable, closed_loop_polynomial, closed_loop ((I + PF)⁻¹ P, F in the return path),
     closed_loop_matrix in (x, e) or (x, e₂) and closed_loop_matrix_estimate in (x, x̂) or (x, z).  Where I − N D is
     singular everywhere the verdict is `no`.  Raises `InputError` for wrong poles or shapes.
@@ -271,6 +275,7 @@ def compensator(
         observer=observer,
         method_name=method,
         gains=(K, L),
+        choose=choose,
     )
     return found.asked(method)
 
@@ -284,6 +289,7 @@ def observer_based(
     observer: str,
     method_name: str = "auto",
     gains: tuple[object, object] = (None, None),
+    choose: str = "auto",
 ) -> OutputFeedback:
     """Return the compensator for the poles, polynomial or gain of each loop."""
     plant = plant.knowing(*control, *estimate, *gains)
@@ -297,7 +303,8 @@ def observer_based(
         if gain is not None:
             reject_both(letter, gain, *given, other=f"{loop}_poles")
             return read_gain(gain, plant, letter, shape)
-        return desired_polynomial(plant, *given, names=(f"{loop}_poles", f"{loop}_polynomial"), degree=degree)
+        names = f"{loop}_poles", f"{loop}_polynomial"
+        return desired_polynomial(plant, *given, names=names, degree=degree, choose=choose)
 
     def of_observer() -> Asked | None:
         try:
@@ -315,7 +322,7 @@ def observer_based(
     _, _, chosen, control_wish, observer_wish = together(
         lambda: _require_kind(observer, plant, method_name),
         lambda: _require_place(gains, method_name, minimal=minimal),
-        lambda: choose("compensator", method_name, _METHODS.get(observer, "separation")),
+        lambda: choose_method("compensator", method_name, _METHODS.get(observer, "separation")),
         lambda: wanted("control", control, plant.order),
         of_observer,
     )
@@ -324,7 +331,9 @@ def observer_based(
     return found
 
 
-def of_known_state(plant: StateSpace, *, task: str, control: tuple[object, object], gain: object) -> KnownState:
+def of_known_state(
+    plant: StateSpace, *, task: str, control: tuple[object, object], gain: object, choose: str = "auto"
+) -> KnownState:
     """Return the loop u = −K x for the control poles, their polynomial or a gain."""
     plant = plant.knowing(*control, gain)
     plant.require("B", "C", task=task)
@@ -333,7 +342,7 @@ def of_known_state(plant: StateSpace, *, task: str, control: tuple[object, objec
         reject_both("K", gain, *control, other="control_poles")
         asked = read_gain(gain, plant, "K", (plant.inputs, plant.order))
     else:
-        asked = desired_polynomial(plant, *control, names=("control_poles", "control_polynomial"))
+        asked = desired_polynomial(plant, *control, names=("control_poles", "control_polynomial"), choose=choose)
     plant, (asked,) = in_common_field(plant, asked)
     return KnownState.design(plant, (asked,), "state_feedback")
 

@@ -27,13 +27,15 @@ from symobs.tasks.analysis.strata.strata import found_once, solved
 from symobs.tasks.design.disturbance.disturbance_input import Exosystem, read_disturbance_input, read_exosystem
 from symobs.tasks.design.full_order.observer import ObserverDesign, model_and_innovation
 from symobs.tasks.design.gain.gain_cases import design_of, places_beside
-from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.design.gain.gain_design import OBSERVER, letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
 from symobs.tasks.design.gain.gain_page import say_as_required
+from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
 from symobs.tasks.design.named_gains import define_gain
 from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.unassignable import say_unassignable
-from symobs.tasks.result import Case, Result, choose, equality, holds, method, page_of, poles_of, task
+from symobs.tasks.result import Case, Result, equality, holds, method, page_of, poles_of, task
+from symobs.tasks.result import choose as choose_method
 from symobs.tasks.result.control_systems import Controller
 
 if TYPE_CHECKING:
@@ -245,6 +247,7 @@ def disturbance_observer(
     V: MatrixText = None,
     poles: Poles = None,
     polynomial: PolynomialText = None,
+    choose: Name = "auto",
     method: Name = "auto",
 ) -> Result:
     """Estimate state and disturbance of ẋ = A x + B u + E d, d = V w, ẇ = S w, by the observer of (x, w).
@@ -255,6 +258,7 @@ def disturbance_observer(
     V             q×r; left out, d consists of the first q entries of w
     poles         the n + r poles, closed under conjugation; or
     polynomial    φ, monic of degree n + r
+    choose        which gain of several outputs: "simple" or "small", as for `observer`
     Returns L_x (n×p), L_w (r×p), the observer's A ([A − L_x C, EV; −L_w C, S]), B_u, B_y in (x, w), fixed_modes, poles,
     stable; `family` where the gains are not unique.  The verdict is `no` where φ cannot be assigned.
     Raises `InputError` for wrong poles or shapes.
@@ -263,11 +267,13 @@ def disturbance_observer(
     plant = plant.knowing(E, S, V, poles, polynomial)
     plant.require("C", task="disturbance_observer")
     exosystem = read_exosystem(plant, read_disturbance_input(plant, E), S, V)
-    desired = desired_polynomial(plant, poles, polynomial, degree=plant.order + exosystem.order)
+    desired = desired_polynomial(plant, poles, polynomial, degree=plant.order + exosystem.order, choose=choose)
     assert desired is not None  # noqa: S101 - required
     plant, (desired, *parts) = in_common_field(plant, desired, *exosystem)
     exosystem = Exosystem(*parts)
-    return choose("disturbance_observer", method, "extended_state").solve(plant, exosystem, desired).asked(method)
+    return (
+        choose_method("disturbance_observer", method, "extended_state").solve(plant, exosystem, desired).asked(method)
+    )
 
 
 # The page of the disturbance observer: plant and exosystem together, observability, the gain, observer and error.
@@ -364,7 +370,9 @@ def write_gain_of_both(page: Builder, design: DisturbanceObserver) -> None:
             _zeros(page, design)
             return
         page.conclude("disturbance_fixed", predicate("polynomial", page["phi_o / det(pencil(X))"]), modes=roots)
-    L = define_gain(page, "L", design.inner.answer["L"], say="disturbance_gain")
+    terms, say = small_gain_terms(page, design.inner, OBSERVER, A, C)
+    L = define_gain(page, "L", *terms, design.inner.answer["L"], say=say or "disturbance_gain")
+    compare_with_simple(page, design.inner, OBSERVER, A, C)
     pencil = page("det(pencil(A_hat) + {L} C_hat)", L=L)
     say_as_required(page, design.desired, pencil, page.value(design.desired.polynomial))
     caution_poles(page, design.desired, "phi_o", "observer")

@@ -30,12 +30,14 @@ from symobs.tasks.design.disturbance.disturbance_input import read_disturbance_i
 from symobs.tasks.design.error_plots import plot_error
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_beside
-from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.design.gain.gain_design import OBSERVER, letters_of
 from symobs.tasks.design.gain.gain_page import say_as_required
+from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
 from symobs.tasks.design.named_gains import define_gain
 from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.unassignable import say_unassignable
-from symobs.tasks.result import Case, Result, choose, equality, holds, method, page_of, task
+from symobs.tasks.result import Case, Result, equality, holds, method, page_of, task
+from symobs.tasks.result import choose as choose_method
 from symobs.tasks.result.control_systems import Controller, observer_of
 
 if TYPE_CHECKING:
@@ -314,6 +316,7 @@ def unknown_input_observer(
     E: MatrixText = None,
     poles: Poles = None,
     polynomial: PolynomialText = None,
+    choose: Name = "auto",
     method: Name = "auto",
 ) -> Result:
     """Estimate the state of ẋ = A x + B u + E d irrespective of d by  ż = F z + B_u u + B_y y,  x̂ = z + H (y − D u).
@@ -322,6 +325,7 @@ def unknown_input_observer(
     E             n×q: how the unknown input d enters
     poles         n desired poles, closed under conjugation; or
     polynomial    φ, monic of degree n
+    choose        which gain of several outputs: "simple" or "small", as for `observer`
     Returns H (n×p), T (I − HC), L (n×p), F (TA − LC, whose characteristic polynomial is φ), B_u (TB − B_y D), B_y (L + FH),
     solvable (rank CE = rank E), fixed_modes (the zeros of (A, E, C), poles of every such observer) and, where L is not
     unique, its family.  The verdict is `no` where rank CE < rank E, and where φ cannot be assigned.
@@ -330,11 +334,11 @@ def unknown_input_observer(
     """
     plant = plant.knowing(E, poles, polynomial)
     plant.require("C", task="unknown_input_observer")
-    desired = desired_polynomial(plant, poles, polynomial)
+    desired = desired_polynomial(plant, poles, polynomial, choose=choose)
     assert desired is not None  # noqa: S101 - required
     enters = read_disturbance_input(plant, E)
     plant, (desired, enters) = in_common_field(plant, desired, enters)
-    return choose("unknown_input_observer", method, "decoupled").solve(plant, enters, desired).asked(method)
+    return choose_method("unknown_input_observer", method, "decoupled").solve(plant, enters, desired).asked(method)
 
 
 # The page of the unknown-input observer: rank test, H and T, zeros, gain, observer, and its error equation without d.
@@ -459,7 +463,11 @@ def _zeros(page: Builder, design: UnknownInputObserver) -> None:
 
 def _gain(page: Builder, design: UnknownInputObserver) -> None:
     """Write L, F = T A − L C, and what multiplies y in the equation of z."""
-    L = define_gain(page, "L", design.answer["L"], say="uio_gain")
+    assert design.inner is not None  # noqa: S101 - there is a gain
+    whole = page["A_T"], page["C"]
+    terms, say = small_gain_terms(page, design.inner, OBSERVER, *whole)
+    L = define_gain(page, "L", *terms, design.answer["L"], say=say or "uio_gain")
+    compare_with_simple(page, design.inner, OBSERVER, *whole)
     state = page("A_T - {L} C", L=L)
     driven = L + state @ page["H_d"]
     is_short = is_narrow(Matrix.block([[state.value, driven.value]]))  # then the observer has the values

@@ -254,6 +254,7 @@ def observer(
     L: GainText = None,
     zero: Entries = None,
     member: Name = "simple",
+    choose: Name = "auto",
     method: Name = "auto",
 ) -> Result:
     """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s).
@@ -264,6 +265,8 @@ def observer(
     L             a given n×p gain, whose polynomial, poles and stability are reported
     zero          entries of L that are to vanish: "(1, 2), (3, 1)" or "[* 0; * *; 0 *]"
     member        "simple" (short numbers) or "decoupled" (each output obeys an equation of its own)
+    choose        "simple" (short numbers) or "small" (largest entry at most 1.5 times that of the best conditioned
+                  placement); left out, small for numbers where the simple one is more than 3 times as large as that one
     Returns L (n×p), polynomial, A (A − LC), B_u (B − LD), B_y (L); where L is not unique, because there are several
     outputs or (C, A) is not observable, the `family` of all gains (parameters, L with them, dimension; F, G, X of
     AᵀX − XF = CᵀG and the shift L₀), whose scope is cyclic A − LC; verdict `no` with the fixed modes where φ cannot
@@ -271,5 +274,13 @@ def observer(
     Source: D. G. Luenberger (1964, 1971).
     """
     return design_gain(
-        ObserverDesign, plant, poles=poles, polynomial=polynomial, given=L, zero=zero, member=member, method=method
+        ObserverDesign,
+        plant,
+        poles=poles,
+        polynomial=polynomial,
+        given=L,
+        zero=zero,
+        member=member,
+        choose=choose,
+        method=method,
     )

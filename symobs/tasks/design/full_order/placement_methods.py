@@ -53,6 +53,9 @@ class PlacementMethod:
                 self._require_one(plant.outputs if kind.letter == "L" else plant.inputs, kind)
             if self.find is None:
                 return kind.of(plant, desired, self.name)
+            if desired.choose != "auto" and not self.single:
+                message = f"the method {self.name} determines the gain, and choose another one"
+                raise InputError(message, where="specification.choose", repair="leave choose or the method out")
             return kind.by_method(plant, desired, self.name, self.find)
 
         solve.__doc__ = formula.summary

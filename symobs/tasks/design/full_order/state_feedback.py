@@ -115,6 +115,7 @@ def state_feedback(
     K: GainText = None,
     zero: Entries = None,
     member: Name = "simple",
+    choose: Name = "auto",
     method: Name = "auto",
 ) -> Result:
     """Design state feedback  u = −K x  with det(sI − A + BK) = φ(s).
@@ -125,6 +126,8 @@ def state_feedback(
     K             a given m×n gain, whose polynomial, poles and stability are reported
     zero          entries of K that are to vanish: "(1, 2), (3, 1)" or "[* 0 *; * * 0]"
     member        "simple" (short numbers) or "decoupled" (each input drives a part of its own)
+    choose        "simple" (short numbers) or "small" (largest entry at most 1.5 times that of the best conditioned
+                  placement); left out, small for numbers where the simple one is more than 3 times as large as that one
     Returns K (m×n), polynomial, closed_loop_matrix (A − BK); where K is not unique, because there are several inputs
     or (A, B) is not controllable, the `family` of all gains (parameters, K with them, dimension; F, G, X of
     AX − XF = BG and the shift K₀), whose scope is cyclic A − BK; verdict `no` with the fixed modes where φ cannot be
@@ -132,5 +135,13 @@ def state_feedback(
     Source: W. M. Wonham (1967).
     """
     return design_gain(
-        StateFeedbackDesign, plant, poles=poles, polynomial=polynomial, given=K, zero=zero, member=member, method=method
+        StateFeedbackDesign,
+        plant,
+        poles=poles,
+        polynomial=polynomial,
+        given=K,
+        zero=zero,
+        member=member,
+        choose=choose,
+        method=method,
     )

@@ -36,12 +36,20 @@ from symobs.tasks.design.gain.gain_kind import (
     GainWithZeros,
     GivenGain,
     NoGainWithZeros,
+    SmallGain,
     UnassignableGain,
 )
-from symobs.tasks.design.pole_placement.multiple_outputs import Family, MultiOutputPair, decoupled_claim, decoupled_gain
+from symobs.tasks.design.pole_placement.multiple_outputs import (
+    Family,
+    MultiOutputPair,
+    decoupled_claim,
+    decoupled_gain,
+    small_gain,
+)
 from symobs.tasks.design.pole_placement.sylvester import fresh_names
 from symobs.tasks.design.pole_placement.zero_pattern import RootGain, equations_for, obstacles, unknown_gain, with_zeros
-from symobs.tasks.result import Result, choose, equality
+from symobs.tasks.result import Result, equality
+from symobs.tasks.result import choose as choose_method
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -113,8 +121,11 @@ class GainDesign(Result):
         if zero:
             return cls._of_kind(plant, method_name, *cls._with_zeros(pair, desired, zero))
         gain = pair.gain(desired)
-        kind = UnassignableGain(desired) if gain is None else AssignedGain(desired)
-        return cls._of_kind(plant, method_name, kind, pair, gain)
+        if gain is None:
+            return cls._of_kind(plant, method_name, UnassignableGain(desired), pair, None)
+        if (small := small_gain(pair, desired, gain)) is not None:
+            return cls._of_kind(plant, method_name, SmallGain(desired, gain, small.vectors), pair, small.gain)
+        return cls._of_kind(plant, method_name, AssignedGain(desired), pair, gain)
 
     @classmethod
     def _with_zeros(
@@ -424,6 +435,7 @@ def design_gain(
     given: GainText,
     zero: Entries,
     member: Name,
+    choose: Name,
     method: Name,
 ) -> Result:
     """Return the design: with a given gain, with zeros, the requested member of the family, or by a method."""
@@ -436,14 +448,17 @@ def design_gain(
     reject_both(gain, given, poles, polynomial)
     reject_both(gain, given, zero, None, other="zero")
     reject_both(gain, given, None if member == "simple" else member, None, other="member")
+    chosen_by = None if choose == "auto" else choose
+    for name, value in ((gain, given), ("zero", zero), ("member", None if member == "simple" else member)):
+        reject_both(name, value, chosen_by, None, other="choose")
     several = plant.outputs if is_observer else plant.inputs
     shape = (plant.order, several) if is_observer else (several, plant.order)
     if given is not None:
         return kind.of_given(plant, read_gain(given, plant, gain, shape))
-    desired = desired_polynomial(plant, poles, polynomial)
+    desired = desired_polynomial(plant, poles, polynomial, choose=choose)
     assert desired is not None  # noqa: S101 - required
     plant, (desired,) = in_common_field(plant, desired)
-    chosen = choose(kind.task, method, "ackermann" if several == 1 else "sylvester")
+    chosen = choose_method(kind.task, method, "ackermann" if several == 1 else "sylvester")
     if member != "simple":
         reject_both("member", member, zero, None, other="zero")
         return kind.of(plant, desired, chosen.name, decoupled=True).asked(method)

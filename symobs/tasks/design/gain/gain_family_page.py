@@ -20,7 +20,8 @@ from symobs.tasks.analysis.page_parts import (
 )
 from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_design import GainDesign
-from symobs.tasks.design.gain.gain_kind import AlgebraicGain
+from symobs.tasks.design.gain.gain_kind import AlgebraicGain, SmallGain
+from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
 from symobs.tasks.design.named_gains import define_gain, entry_letters, gain_letters
 from symobs.tasks.design.pole_placement.sylvester import Sylvester, charts_of
 
@@ -37,6 +38,14 @@ if TYPE_CHECKING:
 def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, desired: DesiredPolynomial) -> None:
     """Write the equation, its solution, and for several outputs (inputs) the family and one member of it."""
     chart = design.chart
+    terms, say = (
+        small_gain_terms(page, design, side, *_pair(page, side)) if design.page_method != "sylvester" else ([], "")
+    )
+    if terms:
+        define_gain(page, side.gain, *terms, say=say)
+        compare_with_simple(page, design, side, *_pair(page, side))
+        page.remark(f"others_{side.kind}", count=str(_freedom(design)))
+        return
     if chart is not None and design.page_method != "sylvester" and _write_structured(page, design, side):
         page.remark(f"others_{side.kind}", count=str(len(chart.names)))
         return
@@ -57,9 +66,11 @@ def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, d
     own = chart.own_G
     if own is None:
         say = f"alone_decoupled_{side.kind}" if design.decoupled else "no_member"
+        say = "small_alone" if isinstance(design.kind, SmallGain) else say
         define_gain(page, side.gain, design.answer[side.gain], say=say)
         return
     words = f"decoupled_{side.kind}" if design.decoupled else "zero" if design.zero else "several"
+    words = "small" if isinstance(design.kind, SmallGain) else words
     page.define(f"G_{side.index}1", own, say=f"member_{words}")
     solution = page.set(f"X_{side.index}1", equation.solution(own))
     determinant = relation(solution.apply("det"), determinant_form(page, solution.value.determinant()))
@@ -69,6 +80,17 @@ def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, d
         page.equal(determinant, say="solution_long")
     page.conclude_silently(_sylvester(page, side, "1", equation))
     define_gain(page, side.gain, _gain(page, side, "1", equation), say="gain_follows")
+    compare_with_simple(page, design, side, *_pair(page, side))
+
+
+def _freedom(design: GainDesign) -> int:
+    """Return how many dimensions the family of an observable pair has."""
+    outputs, order = design.pair.c.shape
+    return order * (outputs - 1)
+
+
+def _pair(page: Builder, side: PlacementProblem) -> tuple[Term, Term]:
+    return page["A"], page["C" if side.is_dual else "B"]
 
 
 def _write_structured(page: Builder, design: GainDesign, side: PlacementProblem) -> bool:

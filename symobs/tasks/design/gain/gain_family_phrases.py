@@ -30,6 +30,22 @@ PHRASES: dict[str, str] = {
     "others_observer": "Other gains place the same poles: they form a family of dimension {count}.",
     "others_state_feedback": "Other gains place the same poles: they form a family of dimension {count}.",
     "member_several": "A gain with simple entries is obtained for",
+    "member_small": "A gain with small entries, near the placement whose eigenvectors are best conditioned§, is obtained for",
+    "small_chosen_observer": "Several gains place these poles. We choose one with small entries, near the placement whose eigenvectors are best conditioned§. All of its columns but one are fixed at short numbers:",
+    "small_chosen_state_feedback": "Several gains place these poles. We choose one with small entries, near the placement whose eigenvectors are best conditioned§. All of its rows but one are fixed at short numbers:",
+    "small_left_observer": "The remaining column is the gain of the plant with a single output",
+    "small_left_state_feedback": "The remaining row is the gain of the plant with a single input",
+    "small_directions_observer": "Several gains place these poles. We choose one with small entries, near the placement whose eigenvectors are best conditioned§: its transpose maps the columns of $Psi_o$, whose free components are short, to those of",
+    "small_directions_state_feedback": "Several gains place these poles. We choose one with small entries, near the placement whose eigenvectors are best conditioned§: it maps the columns of $Psi_c$, whose free components are short, to those of",
+    "small_solved": "where these columns solve an equation whose last matrix has the desired poles as eigenvalues:",
+    "small_vectors_follow": "The gain is therefore",
+    "small_alone": "A gain with small entries, near the placement whose eigenvectors are best conditioned§, is",
+    "small_follows": "It is unique, and Ackermann's formula§ gives",
+    "small_instead_observer": "An observer gain found without regard to size, in contrast, has an entry whose absolute value is at least {bound}.",
+    "small_instead_state_feedback": "A feedback gain found without regard to size, in contrast, has an entry whose absolute value is at least {bound}.",
+    "small_not_letters": "Small entries are chosen for numerical data only; with parameters the gain with simple entries is taken.",
+    "small_not_repeated_observer": "Since {rank}, a pole has at most that many independent eigenvectors. One is desired more often, so that no gain is distinguished by well-conditioned eigenvectors, and the gain with simple entries is taken.",
+    "small_not_repeated_state_feedback": "Since {rank}, a pole has at most that many independent eigenvectors. One is desired more often, so that no gain is distinguished by well-conditioned eigenvectors, and the gain with simple entries is taken.",
     "member_decoupled_observer": "The output errors are decoupled, each satisfying an equation of its own, by the gain obtained for",
     "alone_decoupled_observer": "The output errors are decoupled, each satisfying an equation of its own, by the gain",
     "member_decoupled_state_feedback": "The inputs are decoupled, each driving a separate subsystem, by the gain obtained for",
@@ -52,6 +68,8 @@ PHRASES: dict[str, str] = {
 }
 
 DEMANDS: dict[str, str] = {
+    "small_instead_observer": "reaches L_s",
+    "small_instead_state_feedback": "reaches K_s",
     "spectra_meet_observer": "shared_roots A phi_o",
     "spectra_meet_state_feedback": "shared_roots A phi_c",
     "dimension_observer": "dimension C A",
@@ -66,12 +84,25 @@ DEMANDS: dict[str, str] = {
     "impossible_zero_unless": "no_gain",
 }
 
+ASSERTS: dict[str, tuple[str, ...]] = {
+    "small_not_repeated_observer": ("polynomial",),
+    "small_not_repeated_state_feedback": ("polynomial",),
+}
+
 RESTS_ON: dict[str, str] = {
+    "member_small": "conditioned",
+    "small_chosen_observer": "conditioned",
+    "small_directions_observer": "conditioned",
+    "small_directions_state_feedback": "conditioned",
+    "small_alone": "conditioned",
+    "small_chosen_state_feedback": "conditioned",
+    "small_follows": "ackermann",
     "sylvester_observer": "sylvester",
     "sylvester_state_feedback": "sylvester",
 }
 
 THEOREMS: dict[str, str] = {
+    "conditioned": "kautsky1985",
     "sylvester": "bhattacharyya1982",
 }
 
@@ -80,6 +111,7 @@ NAMING = ("impossible_zero_unless",)
 #: Phrases that go on with the sentence before them.
 CONTINUES = (
     "determinant_free",
+    "small_solved",
     "solution_long",
     "solution_of_member",
 )

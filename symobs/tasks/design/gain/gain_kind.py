@@ -1,4 +1,4 @@
-"""Kinds of gains: given, assigned, decoupled, with zeros, algebraic, or nonexistent."""
+"""Kinds of gains: given, assigned, small, decoupled, with zeros, algebraic, or nonexistent."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, TypeAlias
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
+    from symobs.exact import Matrix
     from symobs.system.specification import DesiredPolynomial
     from symobs.tasks.design.pole_placement.zero_pattern import RootGain
 
@@ -28,6 +29,21 @@ class AssignedGain:
     """A gain that assigns φ."""
 
     desired: DesiredPolynomial
+
+    zero: ClassVar[Places] = ()
+    exists: ClassVar[bool] = True
+
+
+@dataclass
+class SmallGain:
+    """A gain that assigns φ near the best conditioned placement, and the simple one L in whose place it was taken.
+
+    `vectors` are Ψ, f = LᵀΨ and J with (A − L C)ᵀ Ψ = Ψ J where it was found by them.  All are of the observer problem.
+    """
+
+    desired: DesiredPolynomial
+    simple: Matrix
+    vectors: tuple[Matrix, Matrix, Matrix] | None = None
 
     zero: ClassVar[Places] = ()
     exists: ClassVar[bool] = True
@@ -85,5 +101,7 @@ class UnassignableGain:
 
 
 #: What can become of the wish for a polynomial.
-AskedGain: TypeAlias = AssignedGain | DecoupledGain | GainWithZeros | AlgebraicGain | NoGainWithZeros | UnassignableGain
+AskedGain: TypeAlias = (
+    AssignedGain | SmallGain | DecoupledGain | GainWithZeros | AlgebraicGain | NoGainWithZeros | UnassignableGain
+)
 GainKind: TypeAlias = GivenGain | AskedGain

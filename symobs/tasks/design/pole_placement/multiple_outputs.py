@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from symobs.system.specification import DesiredPolynomial
     from symobs.tasks.analysis.strata.loci import Region
+    from symobs.tasks.design.pole_placement.small_gain import Small
     from symobs.tasks.design.pole_placement.sylvester import Sylvester
 
 
@@ -118,6 +119,30 @@ class MultiOutputPair(ObserverPair):
             return gain
         rows = independent_rows(self.matrix, self.ideal)
         return (self.matrix.select(rows, range(self.A.shape[0])) @ gain).normal()
+
+
+# A small member of the family: what can be used.
+
+
+def small_gain(pair: ObserverPair, desired: DesiredPolynomial, simple: Matrix) -> Small | None:
+    """Return a small gain of an observable pair of several outputs in place of the simple one; None where that stays."""
+    if desired.choose == "simple" or why_simple(pair, desired) or not isinstance(pair, MultiOutputPair):
+        return None
+    from symobs.tasks.design.pole_placement import small_gain as search  # noqa: PLC0415 - NumPy is loaded for it alone
+
+    return search.small_gain(pair, desired, simple, asked=desired.choose == "small")
+
+
+def why_simple(pair: ObserverPair, desired: DesiredPolynomial) -> str:
+    """Return why no small gain is looked for: one output, hidden modes, letters or poles wanted too often; else nothing."""
+    if not isinstance(pair, MultiOutputPair):
+        return "one"
+    if pair.A.names or pair.c.names or not desired.is_numeric:
+        return "letters"
+    if not pair.is_observable:
+        return "hidden"
+    repeated = max(power for _, power in factored(desired.polynomial, desired.variable).factors)
+    return "repeated" if repeated > rank(pair.c) else ""
 
 
 # The decoupled member of the family: each output error (each input's part) obeys an equation of its own.
@@ -243,9 +268,11 @@ class Family:
 
     def scope(self, region: Region) -> str:
         """Return which gains the family consists of, and where in a region a denominator vanishes for each of them."""
-        if self.general is None:
+        if self.general is None and (self.pair.A.names or self.pair.c.names):
             return f"{SCOPE}; where none of them has a value is not decided"
-        if symbols_in(self.general) <= {*self.names}:  # a denominator vanishes for some of them only
+        if self.general is None or symbols_in(self.general) <= {
+            *self.names
+        }:  # a denominator vanishes for some of them only
             return SCOPE
         factors = (factor for factor, _ in self.general.common_denominator().factors()[1])
         lost = maximal(locus for factor in factors for locus in loci(_coefficients(factor, self.names), region))

@@ -61,7 +61,7 @@ class Reduction:
 
 def row_reduction(pair: ObserverPair, desired: DesiredPolynomial) -> tuple[Reduction, ...] | None:
     """Return one reduction for each factor of φ with independent columns Ψ; the pair must be observable."""
-    blocks = [J for factor, power in desired.grouped() for J in [_block(factor, desired)] * power]
+    blocks = [J for factor, power in desired.grouped() for J in [block_of(factor, desired)] * power]
     return _search(pair, blocks, ())
 
 
@@ -71,7 +71,7 @@ def gain_of(reductions: Sequence[Reduction]) -> Matrix:
     return psi.T.solve(Matrix.block([[part.f for part in reductions]]).T).normal()
 
 
-def _block(factor: Scalar, desired: DesiredPolynomial) -> Matrix:
+def block_of(factor: Scalar, desired: DesiredPolynomial) -> Matrix:
     """Return the real matrix J of a factor."""
     variable = desired.variable
     coefficients = factor.coefficients(variable)[1:]
@@ -104,9 +104,9 @@ def _search(pair: ObserverPair, blocks: Sequence[Matrix], found: tuple[Reduction
 def _candidates(pair: ObserverPair, J: Matrix, found: tuple[Reduction, ...]) -> Iterator[Reduction]:
     """Yield null vectors, sums of two of them, then generalised vectors; the free component is 1 and −1 in turn."""
     order, sign = pair.A.shape[0], -1 if len(found) % 2 else 1
-    matrix = _matrix(pair, J)
+    matrix = null_matrix(pair, J)
     pivots, reduced = reduced_echelon(matrix)
-    basis = [_null_vector(free, pivots, reduced) for free in range(matrix.shape[1]) if free not in pivots]
+    basis = [null_vector(free, pivots, reduced) for free in range(matrix.shape[1]) if free not in pivots]
     for vector in (*basis, *(a + b for a, b in combinations(basis, 2))):
         yield Reduction(J, matrix, reduced, pivots, vector * sign, None, order)
     for before in reversed(found):
@@ -123,7 +123,7 @@ def _candidates(pair: ObserverPair, J: Matrix, found: tuple[Reduction, ...]) -> 
             yield Reduction(J, wide, echelon, places, vector, before.psi, order)
 
 
-def _matrix(pair: ObserverPair, J: Matrix) -> Matrix:
+def null_matrix(pair: ObserverPair, J: Matrix) -> Matrix:
     """Return [λI − Aᵀ : Cᵀ], of a block J the matrix of ΨJ − AᵀΨ + Cᵀf in the columns of Ψ and f."""
     order, outputs, size = pair.A.shape[0], pair.c.shape[0], J.shape[0]
     empty, identity = Matrix.zeros(order, outputs), Matrix.identity(order)
@@ -134,7 +134,7 @@ def _matrix(pair: ObserverPair, J: Matrix) -> Matrix:
     return Matrix.block(rows)
 
 
-def _null_vector(free: int, pivots: tuple[int, ...], reduced: Matrix) -> Matrix:
+def null_vector(free: int, pivots: tuple[int, ...], reduced: Matrix) -> Matrix:
     """Return the null vector whose free component is 1."""
     entries = [Scalar.of(int(i == free)) for i in range(reduced.shape[1])]
     for row, pivot in enumerate(pivots):

@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 
 #: Where placement by the equation comes from.
 SYLVESTER = "bhattacharyya1982"
-#: A general gain whose determinant could have more terms than this is not written out.
-WRITTEN_UP_TO = 60_000
+#: A general gain whose determinant could have more terms than this is not written out; of a plant with numbers it is no
+#: more than the free parameters, and cases do not follow from it.
+WRITTEN_UP_TO, WRITTEN_OF_NUMBERS = 60_000, 10_000
 
 
 @dataclass
@@ -122,9 +123,9 @@ class Sylvester:
     @property
     def is_long(self) -> bool:
         """Whether the general gain is too long to be written out."""
-        order = self.A.shape[0]
-        parameters = len(self.A.names | self.C.names) + len(self.names)
-        return comb(parameters + order, order) > WRITTEN_UP_TO
+        order, letters = self.A.shape[0], self.A.names | self.C.names
+        most = WRITTEN_UP_TO if letters else WRITTEN_OF_NUMBERS
+        return comb(len(letters) + len(self.names) + order, order) > most
 
     def free_entries(self, L: Matrix) -> Matrix | None:
         """Return the G of a member, with w G = e₁ᵀ; None where A − LC is not cyclic from w Lᵀ."""

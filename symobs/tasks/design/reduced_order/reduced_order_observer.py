@@ -30,7 +30,8 @@ from symobs.tasks.analysis.strata.strata import equations_of, places, solved
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.gain.gain_cases import chosen, design_of, places_beside
 from symobs.tasks.design.gain.gain_design import letters_of
-from symobs.tasks.result import Case, Result, choose, equality, holds, method, poles_of, task
+from symobs.tasks.result import Case, Result, equality, holds, method, poles_of, task
+from symobs.tasks.result import choose as choose_method
 from symobs.tasks.result.control_systems import Controller, observer_of
 
 if TYPE_CHECKING:
@@ -386,6 +387,7 @@ def reduced_order_observer(
     poles: Poles = None,
     polynomial: PolynomialText = None,
     T: MatrixText = None,
+    choose: Name = "auto",
     method: Name = "auto",
 ) -> Result:
     """Design the observer of order n − p  ż = F z + G u + H y,  x̂ = M [y − D u; z],  with det(sI − F) = φ(s).
@@ -393,6 +395,7 @@ def reduced_order_observer(
     plant         n states, p < n outputs, none a combination of the others; B may be missing
     poles         n − p desired poles, closed under conjugation; or
     polynomial    φ, monic of degree n − p
+    choose        which gain of several outputs: "simple" or "small", as for `observer`
     T             optional n×n coordinates x̄ = T x whose upper p rows are C
     Returns L ((n−p)×p), T, F, G, H, M; where (C, A) is not observable either the family of gains or verdict `no` with
     the fixed modes.  Raises `InputError` for wrong poles or shapes, and where nothing is left to estimate.
@@ -404,13 +407,13 @@ def reduced_order_observer(
         completed(plant.matrices.C)  # raises where C is singular
         message = "the outputs show the whole state, nothing is left to estimate"
         raise InputError(message, where="plant.C", repair="use x = C⁻¹ (y − D u)")
-    desired = desired_polynomial(plant, poles, polynomial, degree=unmeasured(plant))
+    desired = desired_polynomial(plant, poles, polynomial, degree=unmeasured(plant), choose=choose)
     assert desired is not None  # noqa: S101 - required
     plant, (desired,) = in_common_field(plant, desired)
     if plant.is_at_values and len(_pivots(plant.matrices.C, None)) < plant.outputs:
         return reduced_observer_of(plant, desired).asked(method)
     coordinates = completed(plant.matrices.C) if T is None else _read_coordinates(T, plant)
-    return choose("reduced_order_observer", method, "partition").solve(plant, desired, coordinates).asked(method)
+    return choose_method("reduced_order_observer", method, "partition").solve(plant, desired, coordinates).asked(method)
 
 
 def _read_coordinates(value: object, plant: StateSpace) -> Matrix:

@@ -21,6 +21,7 @@ from symobs.tasks.design.error_plots import plot_error
 from symobs.tasks.design.full_order.observer import undetermined
 from symobs.tasks.design.gain.gain_design import OBSERVER
 from symobs.tasks.design.gain.gain_page import define_test_matrix, say_as_required
+from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
 from symobs.tasks.design.named_gains import define_gain, gain_letters
 from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.reduced_order.reduced_order_observer import DependentOutputs, ReducedOrderObserver, partition
@@ -290,9 +291,12 @@ def write_inner_gain(page: Builder, design: ReducedOrderObserver) -> None:
             page.equal(*open_, say="compare")
     if not design.inner.fixed_polynomial.is_one:
         _say_fixed_modes(page, design)
-    key = "one_of_several" if several else "hence_gain"
+    rest = page["A_22"], page["A_12"]
+    terms, say = small_gain_terms(page, design.inner, OBSERVER, *rest)
+    key = say or ("one_of_several" if several else "hence_gain")
     key = key if design.inner.fixed_polynomial.is_one else ""
-    define_gain(page, "L", design.answer["L"], say=key)
+    define_gain(page, "L", *terms, design.answer["L"], say=key)
+    compare_with_simple(page, design.inner, OBSERVER, *rest)
     page.in_decimals("L")
     members = [_determinant(page), plain] if desired.is_expanded else [_determinant(page), plain, grouped]
     say_as_required(page, desired, *members)

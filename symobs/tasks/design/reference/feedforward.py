@@ -30,7 +30,8 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
 )
 from symobs.tasks.design.compensator.of_loop import OfLoop
 from symobs.tasks.design.gain.gain_design import FEEDBACK, OBSERVER, letters_of
-from symobs.tasks.result import Result, choose, equality, holds, method, page_of, poles_of, task
+from symobs.tasks.result import Result, equality, holds, method, page_of, poles_of, task
+from symobs.tasks.result import choose as choose_method
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -260,6 +261,7 @@ def feedforward(
     observer_polynomial: PolynomialText = None,
     K: GainText = None,
     observer: Name = "full",
+    choose: Name = "auto",
     method: Name = "auto",
 ) -> Result:
     """Design F in u = −K x + F v, or −K x̂ + F v, so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹.
@@ -270,6 +272,8 @@ def feedforward(
                                             measured, and there is no observer
     K                                       a given m×n gain instead of control poles
     observer                                `full` or `minimal`
+    choose                                  which gains of several inputs or outputs: "simple" or "small", as for
+                                            `state_feedback`
     Returns F (m×p; with more inputs than outputs the smallest one), transfer_function v → y, K, L, polynomial (control
     times observer) and closed_loop_matrix in (x, e) or (x, e₂), without an observer A − BK.  Where the plant has a zero
     at 0 (in discrete time at 1), or a control pole stands there, the verdict is `no`.  Raises `InputError` for wrong poles or
@@ -279,12 +283,18 @@ def feedforward(
     control, estimate = (control_poles, control_polynomial), (observer_poles, observer_polynomial)
     loop: OutputFeedback
     if observer_poles is None and observer_polynomial is None and observer == "full":
-        loop = of_known_state(plant, task="feedforward", control=control, gain=K)
+        loop = of_known_state(plant, task="feedforward", control=control, gain=K, choose=choose)
     else:
         loop = observer_based(
-            plant, task="feedforward", control=control, estimate=estimate, observer=observer, gains=(K, None)
+            plant,
+            task="feedforward",
+            control=control,
+            estimate=estimate,
+            observer=observer,
+            gains=(K, None),
+            choose=choose,
         )
-    found: Result = choose("feedforward", method, "static").solve(loop)
+    found: Result = choose_method("feedforward", method, "static").solve(loop)
     return found.asked(method)
 
 

@@ -31,13 +31,15 @@ from symobs.tasks.analysis.strata.strata import found_once, outside, region_of, 
 from symobs.tasks.design.block_diagrams import draw_integral_action
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_where
-from symobs.tasks.design.gain.gain_design import letters_of
+from symobs.tasks.design.gain.gain_design import FEEDBACK, letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
+from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
 from symobs.tasks.design.named_gains import gain_letters
 from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.readability import OUTPUT_DERIVATIVE, UNKNOWN_ENTRIES
 from symobs.tasks.design.unassignable import say_unassignable
-from symobs.tasks.result import Case, Result, choose, equality, holds, method, page_of, poles_of, task
+from symobs.tasks.result import Case, Result, equality, holds, method, page_of, poles_of, task
+from symobs.tasks.result import choose as choose_method
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -270,13 +272,19 @@ def extended_order(plant: StateSpace, _: object = None) -> int:
 @task
 @poles_of(poles=extended_order)
 def integral_action(
-    plant: StateSpace, *, poles: Poles = None, polynomial: PolynomialText = None, method: Name = "auto"
+    plant: StateSpace,
+    *,
+    poles: Poles = None,
+    polynomial: PolynomialText = None,
+    choose: Name = "auto",
+    method: Name = "auto",
 ) -> Result:
     """Let y follow constant references by u = −K x + k_I ξ, ξ' = r − y, with n + p given poles.
 
     plant         n states, m inputs, p outputs, D allowed; in discrete time ξ(k + 1) = ξ(k) + r − y(k)
     poles         the n + p poles of plant and integrator, closed under conjugation; or
     polynomial    φ, monic of degree n + p
+    choose        which gain of several inputs: "simple" or "small", as for `state_feedback`
     Returns K (m×n), k_I (m×p), solvable (rank [A B; C D] = n + p, in discrete time rank [A − I, B; C D]; with parameters
     exactly where all of solvable_if holds), polynomial,
     closed_loop_matrix in (x, ξ), poles, stable; `family` where the gains [K, −k_I] are not unique.  The verdict is `no`
@@ -285,10 +293,10 @@ def integral_action(
     """
     plant = plant.knowing(poles, polynomial)
     plant.require("B", "C", task="integral_action")
-    desired = desired_polynomial(plant, poles, polynomial, degree=extended_order(plant))
+    desired = desired_polynomial(plant, poles, polynomial, degree=extended_order(plant), choose=choose)
     assert desired is not None  # noqa: S101 - required
     plant, (desired,) = in_common_field(plant, desired)
-    found: Result = choose("integral_action", method, "extended_state").solve(plant, desired)
+    found: Result = choose_method("integral_action", method, "extended_state").solve(plant, desired)
     return found.asked(method)
 
 
@@ -421,9 +429,11 @@ def _gains(page: Builder, design: IntegralAction) -> None:
     """Write [K, −k_I] of the extended plant, and its parts."""
     plant, gain = page.plant, design.loop.answer["K"]
     _K, _k_I = page.set("K", design.answer["K"]), page.set("k_I", design.answer["k_I"])
-    both = page["[K, -k_I]"]
+    both, whole = page["[K, -k_I]"], (page["A_hat"], page["B_hat"])
     compared = plant.inputs == 1 and design.fields["family"] is None and _compare(page, gain, design.desired)
-    page.equal(relation(both, gain), say="hence_gain" if compared else "integral_gains")
+    terms, say = small_gain_terms(page, design.loop, FEEDBACK, *whole)
+    page.equal(relation(both, *terms, gain), say=say or ("hence_gain" if compared else "integral_gains"))
+    compare_with_simple(page, design.loop, FEEDBACK, *whole)
     page.equal("K = #", say="integral_parts", answer=True)
     page.equal("k_I = #", answer=True)
     page.verified(

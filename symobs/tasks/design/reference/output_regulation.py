@@ -49,7 +49,8 @@ from symobs.tasks.design.gain.gain_cases import places_beside
 from symobs.tasks.design.gain.gain_design import FEEDBACK, page_style
 from symobs.tasks.design.gain.gain_page import write_gain
 from symobs.tasks.design.pole_cautions import caution_poles
-from symobs.tasks.result import Case, Result, choose, holds, method, page_of, poles_of, task
+from symobs.tasks.result import Case, Result, holds, method, page_of, poles_of, task
+from symobs.tasks.result import choose as choose_method
 from symobs.tasks.result.control_systems import Controller
 
 if TYPE_CHECKING:
@@ -513,6 +514,7 @@ def output_regulation(
     K: GainText = None,
     observer_poles: Poles = None,
     observer_polynomial: PolynomialText = None,
+    choose: Name = "auto",
     method: Name = "auto",
 ) -> Result:
     """Let y follow r = Q w, ẇ = S w, in spite of a disturbance E w, by u = −K x + (Γ + KΠ) w, ΠS = AΠ + BΓ + E, CΠ + DΓ = Q.
@@ -523,6 +525,8 @@ def output_regulation(
     E                                       n×q: how w disturbs the state; 0 where it is left out
     poles or polynomial, or K               the n poles of A − BK, or a given m×n gain
     observer_poles or observer_polynomial   the n + q poles of an observer of (x, w) from y; without them x and w are known
+    choose                                  which gains of several inputs or outputs: "simple" or "small", as for
+                                            `state_feedback`
     Returns Pi (n×q), Gamma (m×q), solvable, K, F (Γ + KΠ, of w), blocked_modes (the eigenvalues λ of S with
     rank [A − λI, B; C, D] < n + p: zeros of the plant), fixed_modes, polynomial, closed_loop_matrix in x − Πw, and with an
     observer L ((n + q)×p), polynomial and matrix of the whole loop.  The verdict is `no` where the equations have no
@@ -535,17 +539,25 @@ def output_regulation(
     if K is not None:
         reject_both("K", K, poles, polynomial)
     gain = None if K is None else read_gain(K, plant, "K", (plant.inputs, plant.order))
-    asked = desired_polynomial(plant, poles, polynomial) if gain is None else gain
+    asked = desired_polynomial(plant, poles, polynomial, choose=choose) if gain is None else gain
     names = ("observer_poles", "observer_polynomial")
     desired = desired_polynomial(
-        plant, observer_poles, observer_polynomial, names=names, degree=plant.order + exogenous.order, required=False
+        plant,
+        observer_poles,
+        observer_polynomial,
+        names=names,
+        degree=plant.order + exogenous.order,
+        required=False,
+        choose=choose,
     )
     entries, letters = exogenous.order * (plant.order + plant.inputs), plant.field.names
     if entries > (_MOST_WITH_PARAMETERS if letters else _MOST_ENTRIES):
         raise Undecided(f"output_regulation is undecided: {entries} unknown entries are too many")
     plant, (asked, desired, *parts) = in_common_field(plant, asked, desired, *exogenous)
     loop = KnownState.design(plant, (asked,), "state_feedback")
-    found: Result = choose("output_regulation", method, "regulator_equations").solve(Exogenous(*parts), loop, desired)
+    found: Result = choose_method("output_regulation", method, "regulator_equations").solve(
+        Exogenous(*parts), loop, desired
+    )
     return found.asked(method)
 
 

@@ -26,7 +26,8 @@ from symobs.tasks.design.compensator.minimal_order_compensator_page import (
 )
 from symobs.tasks.design.compensator.of_loop import OfLoop
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
-from symobs.tasks.result import Result, choose, holds, method, page_of, poles_of, task
+from symobs.tasks.result import Result, holds, method, page_of, poles_of, task
+from symobs.tasks.result import choose as choose_method
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -194,6 +195,7 @@ def tracking(
     reference_matrix: MatrixText = None,
     reference_start: MatrixText = None,
     observer: Name = "minimal",
+    choose: Name = "auto",
     method: Name = "auto",
 ) -> Result:
     """Track ẋ_d = A_d x_d by u = K (x_d − x̂) − K_d x_d, where A_d − A + BK_d = 0 has a solution.
@@ -204,6 +206,8 @@ def tracking(
     reference_matrix                        A_d, n×n; the plant's own A where it is left out
     reference_start                         x_d(0): then only this trajectory is to be followed
     observer                                `minimal` or `full`
+    choose                                  which gains of several inputs or outputs: "simple" or "small", as for
+                                            `state_feedback`
     Returns K, K_d (m×n), solvable (rank [B, A − A_d] = rank B), error_matrix in (e_d, e₂) or (e_d, e), polynomial
     (control times observer) and L.  Raises `InputError` for wrong poles or shapes.
     Source: B. A. Francis and W. M. Wonham (1976).
@@ -226,8 +230,9 @@ def tracking(
         control=(control_poles, control_polynomial),
         estimate=(observer_poles, observer_polynomial),
         observer=observer,
+        choose=choose,
     )
-    found: Result = choose("tracking", method, "reference_model").solve(loop, reference, start)
+    found: Result = choose_method("tracking", method, "reference_model").solve(loop, reference, start)
     return found.asked(method)
 
 
