@@ -18,6 +18,7 @@ from symobs.applications.checking.handwriting import (
     squashed,
     without_drawings,
     without_latex,
+    without_marks,
 )
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.expression import declared_name, parse_matrix, parse_scalar
@@ -332,6 +333,7 @@ class Answer:
 
     values    by field, or by task a table by field; `loose` where some may be lines of a derivation only
     symbols   letters of the student's own, which are real
+    note      how the file was read, where that is worth a word
     """
 
     student: str = ""
@@ -341,6 +343,7 @@ class Answer:
     values: Mapping[str, Any] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
     loose: bool = False
+    note: str = ""
 
 
 def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer:
@@ -354,7 +357,7 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
     text = typed(given)
     if re.match(r"\s*\{\s*[\"}]", text) or _TABLES.search(text):
         return _of_tables(parse(text, where))
-    return _of_lines(without_latex(without_drawings(text)), where)
+    return _of_lines(without_latex(without_drawings(without_marks(text))), where)
 
 
 def states(text: str) -> bool:

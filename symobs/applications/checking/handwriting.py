@@ -21,6 +21,31 @@ if TYPE_CHECKING:
     from symobs.tasks.result.in_convention import ResultInConvention
 
 
+# -- marks of documents ------------------------------------------------------------------------------------------------
+
+
+_DOCUMENT = re.compile(r"\\begin\{document\}(.*?)(?:\\end\{document\}|\Z)", re.DOTALL)
+_FENCE = re.compile(r"(?m)^[ \t]*(?:```|~~~).*$")
+#: What stands before a definition in a list, - L = …, a) L = …, and in the prompt of a program.
+_BULLET = re.compile(
+    r"(?m)^[ \t]*(?:[-*+•][ \t]+|\(?(?:\d{1,2}|[a-z])\)[ \t]+|\d{1,2}\.[ \t]+|>>>?[ \t]*)"
+    r"(?=[$*`\\]{0,2}\w[^=\n]{0,40}=)"
+)
+_STRONG = re.compile(r"(?<![\w)\]])(\*\*|__|`+)(?=\S)([^\n]*?\S)\1(?![\w(])")
+#: Statements of programs that define nothing.
+_STATEMENT = re.compile(
+    r"(?m)^[ \t]*(?:(?:import|from|print|disp|display|fprintf|clear|clc|close|format|syms|pkg)\b|init_printing|plt\.)[^=\n]*$"
+)
+
+
+def without_marks(text: str) -> str:
+    """Return a text without the marks of Markdown and LaTeX around it, and without statements that define nothing."""
+    if found := _DOCUMENT.search(text):
+        text = found[1]
+    text = _BULLET.sub("", _STATEMENT.sub("", _FENCE.sub("", text)))
+    return _STRONG.sub(r"\2", text) if "`" in text or "**" in text or "__" in text else text
+
+
 # -- LaTeX -------------------------------------------------------------------------------------------------------------
 
 
@@ -47,9 +72,10 @@ _SIGNS |= {"approx": "≈", "le": "<=", "leq": "<=", "ge": ">=", "geq": ">="}
 
 def without_latex(text: str) -> str:
     """Return a text whose LaTeX is written as in problem files: [1, 2; 3, 4], (a)/(b), exp(-t), omega_0."""
-    if not re.search(r"\\[A-Za-z]|[\^_]\{", text):
+    if not re.search(r"\\[][()A-Za-z]|[\^_]\{|\$", text):
         return text
     text = re.sub(r"\\text\{[^{}]*\}\s*\\qquad", "", text)  # the words before a display
+    text = re.sub(r"(?<!\\)\\[][()]", " ", text)  # the signs around one
     text = re.sub(r"\\bar\s*\{?\s*([A-Za-z])\s*\}?", r"\1_bar", _SPACES.sub(" ", text))
     for _ in range(_DEEPEST):
         before = text
