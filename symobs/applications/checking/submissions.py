@@ -271,8 +271,8 @@ def _of_json_lines(text: str, path: Path) -> list[tuple[str, Submission]]:
                 )
             )
         elif isinstance(text := table.get("text", table.get("answer")), str):
-            variant, convention = _word(table.get("variant")), _word(table.get("convention")) or ""
-            found.append((f"line {number}", Submission(table["student"], variant, text, None, convention)))
+            chosen, convention = _word(table.get("variant")), _word(table.get("convention")) or ""
+            found.append((f"line {number}", Submission(table["student"], chosen, text, None, convention)))
         elif {"answer", "step"} & table.keys():
             variant = _word(table.pop("variant", None))
             found.append((f"line {number}", Submission(table["student"], variant, line_of(table))))
