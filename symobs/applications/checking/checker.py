@@ -427,8 +427,10 @@ class Checked:
         judged = {
             view.task: judge_task(view, given[view.task], handed_in.symbols, self.problem.marking) for view in views
         }
-        parts = self._parts(views, judged)
         lines, milestones = judge_lines(self.problem, views, judged, handed_in, self.problem.marking.milestones)
+        if handed_in.loose:
+            judged = {task: _without_formulas(each, lines) for task, each in judged.items()}
+        parts = self._parts(views, judged)
         if handed_in.loose:
             lines = _without_answers(lines, parts)
         report = CheckReport(
@@ -573,6 +575,20 @@ def _add_called_otherwise(
                 found[view.task][name] = entry
         names, _ = known_names(view)
         found[view.task] = {name: with_own_letters(v, answer.values, names) for name, v in found[view.task].items()}
+
+
+def _without_formulas(judgement: TaskJudgement, lines: Sequence[Line]) -> TaskJudgement:
+    """Return a judgement without the parts that a text has as formulas in letters alone, K = R^-1 B' P: these are lines."""
+    sides = [(line, *line.relation.partition("=")[::2]) for line in lines]
+    decided = {
+        left.strip()
+        for line, left, right in sides
+        if line.verdict in {"true", "follows", "false"}
+        and "[" not in right
+        and re.search(r"(?<![A-Za-z_])[A-ZΠΓ]", right)
+    }
+    kept = (part for part in judgement.parts if part.verdict != "unreadable" or part.letter not in decided)
+    return replace(judgement, parts=tuple(kept))
 
 
 def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line, ...]:

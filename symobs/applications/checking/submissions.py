@@ -270,9 +270,9 @@ def _of_json_lines(text: str, path: Path) -> list[tuple[str, Submission]]:
                     repair='write {"student": "s1", "text": "…"}, or the parts by their names',
                 )
             )
-        elif isinstance(text := table.get("text", table.get("answer")), str):
+        elif isinstance(whole := table.get("text", table.get("answer")), str):
             chosen, convention = _word(table.get("variant")), _word(table.get("convention")) or ""
-            found.append((f"line {number}", Submission(table["student"], chosen, text, None, convention)))
+            found.append((f"line {number}", Submission(table["student"], chosen, whole, None, convention)))
         elif {"answer", "step"} & table.keys():
             variant = _word(table.pop("variant", None))
             found.append((f"line {number}", Submission(table["student"], variant, line_of(table))))

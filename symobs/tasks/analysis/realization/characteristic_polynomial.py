@@ -28,6 +28,7 @@ class CharacteristicPolynomial(Result):
 
     task: ClassVar[str] = "characteristic_polynomial"
     answered_by = ("polynomial",)
+    leads = ("polynomial",)
     letters = {"polynomial": "chi", "roots": "chi"}
 
     def claims(self) -> Iterator[Claim]:
@@ -51,6 +52,11 @@ class CharacteristicPolynomial(Result):
             "stable": found.verdict,
             "stable_if": found.inequalities(plant.symbols.signs),
         }
+
+    def consequences(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the roots of another polynomial."""
+        polynomial, variable = given["polynomial"], self.plant.variable
+        return {"roots": roots_of(polynomial, variable)} if polynomial.is_polynomial_in(variable) else {}
 
     def write(self, page: Builder) -> None:
         """Write the determinant, multiplied out and factored, and the roots."""
