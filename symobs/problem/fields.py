@@ -294,5 +294,9 @@ def read_marking(value: object, tasks: Collection[str], errors: Errors) -> Marki
     if "digits" in found and found.get("decimals") != "accept":
         errors.note("nothing rounded is accepted", "marking.digits", 'write decimals = "accept" beside it')
     found["milestones"] = tuple(Milestone(**each) for each in found.pop("milestone", ()) if len(each) == 2)
+    points = sum(each.points for each in found["milestones"])
+    if (total := found.get("total")) is not None and points > total:
+        message = f"the milestones have {points} points, the whole answer {total}"
+        errors.note(message, "marking.total", "give a larger total, or fewer points")
     found["credit"] = {**CREDIT, **found.get("credit", {})}
     return Marking(**found)

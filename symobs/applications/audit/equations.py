@@ -432,6 +432,10 @@ def values(plant: StateSpace, results: Sequence[Result], convention: Convention)
     found |= blocks_of(plant, K, L, convention)
     if name == "plusK-minusHC" and L is not None and m.C is not None and L.shape == m.C.T.shape:
         found |= {"F": m.A - L @ m.C, "G": m.B}  # of x̂' = F x̂ + G u + H y
+    if not plant.is_time_varying and not any("polynomial" in result.fields for result in results):
+        found.setdefault("chi", PlantMatrices.of(plant).A.characteristic_polynomial(plant.variable))
+    for result in reversed(results):
+        found |= result.named_data
     return {key: value for key, value in found.items() if value is not None}
 
 

@@ -18,6 +18,7 @@ from symobs.applications.checking.handwriting import (
     squashed,
     without_drawings,
     without_latex,
+    without_marks,
 )
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.expression import declared_name, parse_matrix, parse_scalar
@@ -311,6 +312,10 @@ _TABLES = re.compile(r"(?m)^[ \t]*(\[\[?[ \t]*(answer|step)\b|(student|conventio
 #: What begins a remark.
 _REMARK = re.compile(r"[#%]")
 _RELATION = re.compile(r"[=<>]|!=")
+#: A formula in letters of matrices, R^-1 B' P, which is a line, and gives no value in place of an earlier one.
+_IN_LETTERS = re.compile(
+    r"(?<![A-Za-z_])[A-ZΠΓ]'|(?<![A-Za-z_])[A-ZΠΓ]\s*\^\s*\(?-1|(?<![A-Za-z_])[A-ZΠΓ]\s+[A-ZΠΓ](?!\w)"
+)
 #: What begins a case, whose answers do not replace those of the main line, and what ends it.
 _CASE, _SECTION = re.compile(r"(?:Case|Fall)\b"), re.compile(r"\d+\. ")
 #: Several numbers in a row, and the bar of a quotient, as MATLAB displays them below a name.
@@ -332,6 +337,7 @@ class Answer:
 
     values    by field, or by task a table by field; `loose` where some may be lines of a derivation only
     symbols   letters of the student's own, which are real
+    note      how the file was read, where that is worth a word
     """
 
     student: str = ""
@@ -341,6 +347,7 @@ class Answer:
     values: Mapping[str, Any] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
     loose: bool = False
+    note: str = ""
 
 
 def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer:
@@ -354,7 +361,7 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
     text = typed(given)
     if re.match(r"\s*\{\s*[\"}]", text) or _TABLES.search(text):
         return _of_tables(parse(text, where))
-    return _of_lines(without_latex(without_drawings(text)), where)
+    return _of_lines(without_latex(without_drawings(without_marks(text))), where)
 
 
 def states(text: str) -> bool:
@@ -400,7 +407,8 @@ def _of_lines(text: str, where: str) -> Answer:
         functions |= {defined.name} if is_new else set()
         task, _, name = defined.name.rpartition(".")
         table = values.setdefault(task, {}) if task else values
-        if value and (is_new or not (in_case and name in table)):
+        is_kept = name in table and (in_case or _IN_LETTERS.search(defined.value) is not None)
+        if value and (is_new or not is_kept):
             table[name] = value
         if not task and isinstance(value, str) and _is_relation(name, value):
             steps.append(Step(line if defined.is_chain else f"{name}{defined.argument} = {value}", place))

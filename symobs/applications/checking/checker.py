@@ -14,6 +14,7 @@ from symobs.applications.audit.auditor import printed_entries
 from symobs.applications.checking.answers import Answer, plain, read_answer, states, written_text
 from symobs.applications.checking.derivations import is_of_conditions, judge_lines, judge_milestone
 from symobs.applications.checking.faults import Explained, explain_gain, explain_value, other_values
+from symobs.applications.checking.folders import text_of_answer, text_of_path
 from symobs.applications.checking.handwriting import entries_of, fields_of, listed_of, with_own_letters
 from symobs.applications.checking.judgement import (
     OF_THE_PLANT,
@@ -25,12 +26,12 @@ from symobs.applications.checking.judgement import (
     rounds,
 )
 from symobs.applications.checking.regions import read_conditions
-from symobs.applications.checking.report import SHOW, CheckReport, Line, Part
+from symobs.applications.checking.report import SHOW, TO_BE_READ, CheckReport, Line, Part
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.convention import Convention, convention_named
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError, UsageError
-from symobs.problem import MAX_BYTES, Problem, is_text, read, text_of
+from symobs.problem import Problem, is_text, read, text_of
 from symobs.problem.expect import available, factored_table, found_in, names_of, shown_value
 from symobs.problem.file_tables import Errors
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
@@ -99,11 +100,11 @@ def part_of(
         name, judged.letter, judged.verdict, weight, Fraction(0), written_text(judged.given), hints=judged.hints
     )
     part = replace(part, right=right, reason=judged.reason)
+    if judged.verdict in TO_BE_READ:
+        return replace(part, credit=None)
     match judged.verdict:
         case "right":
             return replace(part, credit=Fraction(1), effect=_effect(view, judgement, judged))
-        case "undecided":
-            return replace(part, credit=None)
         case "follows":
             origins = tuple(f"{view.task}.{origin}" for origin in judged.origins)
             return _followed(replace(part, origins=origins), judgement, judged, marking)
@@ -426,8 +427,10 @@ class Checked:
         judged = {
             view.task: judge_task(view, given[view.task], handed_in.symbols, self.problem.marking) for view in views
         }
-        parts = self._parts(views, judged)
         lines, milestones = judge_lines(self.problem, views, judged, handed_in, self.problem.marking.milestones)
+        if handed_in.loose:
+            judged = {task: _without_formulas(each, lines) for task, each in judged.items()}
+        parts = self._parts(views, judged)
         if handed_in.loose:
             lines = _without_answers(lines, parts)
         report = CheckReport(
@@ -445,6 +448,8 @@ class Checked:
         if report.verdict == "right" and report.first_false is not None:
             hint = f"{report.first_false} does not lead to your (right) result"
             report = replace(report, hints=(hint,))
+        if handed_in.note:
+            report = replace(report, hints=(*report.hints, handed_in.note))
         if show == "solution":
             report = replace(report, page=self.solution(chosen))
         return report.bounded(show)
@@ -453,10 +458,9 @@ class Checked:
         self, student: str, variant: str | None, verdict: str, reason: str, show: str = "reason"
     ) -> CheckReport:
         """Return the report on an answer that as a whole cannot be read (`unreadable`), or checked (`undecided`)."""
-        credit = None if verdict == "undecided" else Fraction(0)
         marking, title = self.problem.marking, self.problem.title
         parts = tuple(
-            replace(missing(view, name, marking), verdict=verdict, reason=reason, credit=credit)
+            replace(missing(view, name, marking), verdict=verdict, reason=reason, credit=None)
             for view, name in self.asked(self.views())
         )
         points = tuple((each.relation, each.points, False) for each in marking.milestones)
@@ -464,9 +468,14 @@ class Checked:
         report = CheckReport(title, student, variant, name, show, parts, (), points, marking.total)
         return report.bounded(show)
 
-    def report_of_text(self, text: str, where: str, show: str, convention: str | None = None) -> CheckReport:
-        """Return the report on the text of an answer file; its errors name the file."""
-        return self.report(read_answer(text, where), show, convention)
+    def report_of_file(self, raw: bytes, where: str, show: str, convention: str | None = None) -> CheckReport:
+        """Return the report on the bytes of an answer file; its errors name the file."""
+        try:
+            text, note = text_of_answer(raw, where)
+        except InputError as error:
+            error.where = where
+            raise
+        return self.report(replace(read_answer(text, where), note=note), show, convention)
 
     def solution(self, convention: Convention) -> str:
         """Return the derivation of the solution as HTML."""
@@ -479,7 +488,8 @@ class Checked:
         if isinstance(answer, Answer):
             return answer
         if isinstance(answer, Path) or (isinstance(answer, str) and _is_path(answer)):
-            return read_answer(text_of(answer, limit=MAX_BYTES)[0], "answer")
+            text, note = text_of_path(Path(answer))
+            return replace(read_answer(text, "answer"), note=note)
         views = self.views()
         asked = self.asked(views)
         if isinstance(answer, Mapping) or (isinstance(answer, str) and (len(asked) != 1 or states(answer))):
@@ -565,6 +575,20 @@ def _add_called_otherwise(
                 found[view.task][name] = entry
         names, _ = known_names(view)
         found[view.task] = {name: with_own_letters(v, answer.values, names) for name, v in found[view.task].items()}
+
+
+def _without_formulas(judgement: TaskJudgement, lines: Sequence[Line]) -> TaskJudgement:
+    """Return a judgement without the parts that a text has as formulas in letters alone, K = R^-1 B' P: these are lines."""
+    sides = [(line, *line.relation.partition("=")[::2]) for line in lines]
+    decided = {
+        left.strip()
+        for line, left, right in sides
+        if line.verdict in {"true", "follows", "false"}
+        and "[" not in right
+        and re.search(r"(?<![A-Za-z_])[A-ZΠΓ]", right)
+    }
+    kept = (part for part in judgement.parts if part.verdict != "unreadable" or part.letter not in decided)
+    return replace(judgement, parts=tuple(kept))
 
 
 def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line, ...]:

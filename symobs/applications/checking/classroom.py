@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from symobs.applications.batch.engine import Settings
 from symobs.applications.batch.jobs import USUAL_BUDGET
 from symobs.applications.batch.run import Batch
+from symobs.applications.checking.folders import written_place
 from symobs.applications.checking.report import decimal
 from symobs.applications.checking.submissions import job_of, not_held, read_submissions, report_of_row, solved
 from symobs.formula.expression.source import shown
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
     from symobs.applications.checking.checker import Checked
     from symobs.applications.checking.report import CheckReport, Part
-    from symobs.applications.checking.submissions import ClassProblems, Submission
+    from symobs.applications.checking.submissions import ClassProblems, Submission, Submissions
 
 
 # What a class made of a problem: verdicts, marks, slips, and where derivations went wrong.
@@ -47,16 +48,6 @@ def safe(cell: str) -> str:
     return f"'{cell}" if cell.startswith(_FORMULA) and not _NUMBER.fullmatch(cell) else cell
 
 
-def by_hand(report: CheckReport) -> list[Part]:
-    """Return the parts that a human has to look at: those that count and cannot be read, or are undecided."""
-    return [part for part in report.parts if part.weight and part.verdict in {"unreadable", "undecided"}]
-
-
-def score_of(report: CheckReport) -> Fraction | None:
-    """Return the marks of an answer in a class; None while a part is to be looked at by hand."""
-    return None if by_hand(report) else report.score
-
-
 def marks(reports: Sequence[CheckReport]) -> str:
     """Return the marks as CSV: a row a student, a column a part."""
     parts = list(dict.fromkeys(part.part for report in reports for part in report.parts if part.weight))
@@ -65,7 +56,7 @@ def marks(reports: Sequence[CheckReport]) -> str:
     writer.writerow(["student", "variant", "verdict", "score", *(f"part:{part}" for part in parts)])
     for report in reports:
         by_name = {part.part: part for part in report.parts}
-        score = "" if (found := score_of(report)) is None else decimal(found)
+        score = "" if report.score is None else decimal(report.score)
         cells = [report.student, report.variant or "", report.verdict, score]
         cells += [by_name[part].verdict if part in by_name else "" for part in parts]
         writer.writerow([safe(cell) for cell in cells])
@@ -75,12 +66,12 @@ def marks(reports: Sequence[CheckReport]) -> str:
 def summary(
     title: str,
     reports: Sequence[CheckReport],
-    superseded: Sequence[tuple[str, str]],
+    submissions: Submissions,
     without_variant: Collection[str] = (),
 ) -> dict[str, Any]:
     """Return the summary of a class as data; students without a known variant are not in the mean."""
     marked = [report for report in reports if report.student not in without_variant]
-    scores = [score for report in marked if (score := score_of(report)) is not None]
+    scores = [report.score for report in marked if report.score is not None]
     mean = sum(scores, Fraction(0)) / len(scores) if scores else None
     parts: dict[str, list[tuple[str, Part]]] = {}
     for report in reports:
@@ -101,7 +92,10 @@ def summary(
         "variants": _by_variant(marked),
         "agreement": {name: _agreement(found) for name, found in parts.items()},
         "without_variant": sorted(without_variant),
-        "superseded": [{"student": student, "place": place} for student, place in superseded],
+        "superseded": [{"student": student, "place": place} for student, place in submissions.superseded],
+        "left_out": [
+            {"student": student, "file": place, "reason": reason} for student, place, reason in submissions.left_out
+        ],
         "unreadable": [
             {"student": report.student, "message": "; ".join(dict.fromkeys(reasons))}
             for report in reports
@@ -110,7 +104,7 @@ def summary(
         "by_hand": [
             {"student": report.student, "part": part.part, "text": part.given, "reason": part.reason}
             for report in reports
-            for part in by_hand(report)
+            for part in report.by_hand
         ],
     }
 
@@ -119,8 +113,8 @@ def _by_variant(reports: Sequence[CheckReport]) -> dict[str, Any]:
     """Return of each variant how many have marks, their mean, and the sum of the squared differences from it."""
     scores: dict[str, list[Fraction]] = {}
     for report in reports:
-        if report.variant is not None and (score := score_of(report)) is not None:
-            scores.setdefault(report.variant, []).append(score)
+        if report.variant is not None and report.score is not None:
+            scores.setdefault(report.variant, []).append(report.score)
     found = {}
     for name, own in sorted(scores.items()):
         mean = sum(own, Fraction(0)) / len(own)
@@ -169,9 +163,17 @@ def _agreement(found: Sequence[tuple[str, Part]]) -> list[dict[str, Any]]:
     return [{"given": text, "count": len(who), "students": who} for text, who in ranked if len(who) > 1]
 
 
-def as_markdown(found: Mapping[str, Any]) -> str:
-    """Return a summary as Markdown."""
-    from symobs.pages.formats.markdown import plain  # noqa: PLC0415 - only with a class
+def told_of_replaced(submissions: Submissions) -> list[str]:
+    """Return of each submission that does not count which one of the same student does."""
+    return [
+        f"{shown(student, 60)}: {written_place(submissions.places[student])} counts, not {written_place(place)}"
+        for student, place in submissions.superseded
+    ]
+
+
+def as_markdown(found: Mapping[str, Any], replaced: Sequence[str] = ()) -> str:
+    """Return a summary as Markdown; `replaced` says which of several submissions of a student count."""
+    from symobs.pages.formats.markdown import code, plain  # noqa: PLC0415 - only with a class
 
     lines = [f"# {plain(found['title'] or 'Summary')}", ""]
     mean = f", {found['mean_decimal']} of {found['total']} marks on average" if found["mean_decimal"] else ""
@@ -195,15 +197,23 @@ def as_markdown(found: Mapping[str, Any]) -> str:
             for name, each in found["variants"].items()
         ]
     if found["by_hand"]:
-        lines += ["", "## To be looked at by hand", "", "| student | part | text | reason |", "|---|---|---|---|"]
+        lines += ["", "## Not yet marked: to be looked at by hand", ""]
+        lines += ["| student | part | text | reason |", "|---|---|---|---|"]
         lines += [
-            f"| {plain(each['student'])} | {plain(each['part'])} | {plain(each['text'])} | {plain(each['reason'])} |"
+            f"| {plain(each['student'])} | {plain(each['part'])} | {code(each['text'])} | {plain(each['reason'])} |"
             for each in found["by_hand"]
+        ]
+    if found["left_out"]:
+        lines += ["", "## Files that were left out", "", "| student | file | reason |", "|---|---|---|"]
+        lines += [
+            f"| {plain(each['student'])} | {plain(each['file'])} | {plain(each['reason'])} |"
+            for each in found["left_out"]
         ]
     if found["without_variant"]:
         lines += ["", f"Without a known variant, not in the average: {plain(', '.join(found['without_variant']))}."]
     if found["superseded"]:
-        lines += ["", f"{len(found['superseded'])} submissions were replaced by later ones of the same student."]
+        lines += ["", f"{len(found['superseded'])} submissions were replaced by others of the same student.", ""]
+        lines += [f"- {plain(line)}" for line in replaced]
     return "\n".join([*lines, ""])
 
 
@@ -273,9 +283,10 @@ def check_class(
     budget: Budget,
     progress: Callable[[int, int], None],
     tell: Callable[[str], None],
-) -> tuple[dict[str, str], int]:
-    """Return the files of the results by name, and the exit code: 5 where some are undecided.
+) -> tuple[dict[str, str], list[str], int]:
+    """Return the files of the results by name, what is said of them, and the exit code.
 
+    The code is 5 where some are undecided, 3 where files were left out since they could not be read.
     `tell` is given what the teacher should know of the table as a whole.
     Reports are kept in the folder `work` until the files are there: a run that was ended goes on from it.
     Raises `ProblemErrors` where the problem or the table as a whole cannot be used.
@@ -284,9 +295,14 @@ def check_class(
     submissions = read_submissions(path, _parts(checked), columns)
     for line in filter(None, [not_held(submissions.columns, _asked(checked), _parts(checked))]):
         tell(line)
+    if submissions.note:
+        tell(f"{shown(path.name, 60)}: {submissions.note}")
+    for _, place, reason in submissions.left_out:
+        tell(f"{written_place(place)} is left out: {reason}")
     entries, unknown = _with_variants(problems, submissions.entries)
     for i, reason in unknown.items():
         tell(f"{shown(entries[i].student, 60)} is not counted in the mean: {reason}")
+    unknown |= {i: each.unread for i, each in enumerate(entries) if each.unread}
     known = [submission for i, submission in enumerate(entries) if i not in unknown]
     jobs = {id(each): job_of(problems.text_of(each.variant), str(folder), each, show) for each in known}
     few = workers is None and budget == Budget(None, None) and len(jobs) < _WORTH_CHILDREN
@@ -300,28 +316,34 @@ def check_class(
     rows = {row["key"]: row for row in run.rows()}
     texts = {job.key: problems.text_of(each.variant) for each in known for job in [jobs[id(each)]]}
     done = {key: report_of_row(rows[key], text, str(folder), show) for key, text in texts.items()}
-    reports = [
-        replace(
-            checked.without_answer("", None, "unreadable", unknown[i], show)
-            if i in unknown
-            else done[jobs[id(each)].key],
-            student=each.student,
-            variant=each.variant,
-        )
-        for i, each in enumerate(entries)
-    ]
-    apart = {entries[i].student for i in unknown}
-    found = summary(problems.title or checked.problem.title, reports, submissions.superseded, apart)
+    reports = []
+    for i, each in enumerate(entries):
+        unread = checked.without_answer("", None, "unreadable", unknown[i], show) if i in unknown else None
+        report = unread or done[jobs[id(each)].key]
+        hints = (*report.hints, *filter(None, [each.note]))
+        reports.append(replace(report, student=each.student, variant=each.variant, hints=hints))
+    apart = {entries[i].student for i in unknown if not entries[i].unread}
+    found = summary(problems.title or checked.problem.title, reports, submissions, apart)
+    replaced = told_of_replaced(submissions)
     files = {
         "results.jsonl": "".join(json.dumps(report.as_data(), ensure_ascii=False) + "\n" for report in reports),
         "marks.csv": marks(reports),
-        "summary.md": as_markdown(found),
+        "summary.md": as_markdown(found, replaced),
         "summary.svg": picture(found),
         "summary.json": json.dumps(found, indent=2, ensure_ascii=False) + "\n",
     }
     if feedback:
         files |= {f"feedback/{name_of(report.student)}.html": report.to_html() for report in reports}
-    return files, 5 if any(report.verdict == "undecided" for report in reports) else 0
+    is_open = any(report.verdict == "undecided" for report in reports)
+    return files, [*replaced, counted(found)], 5 if is_open else 3 if submissions.left_out else 0
+
+
+def counted(found: Mapping[str, Any]) -> str:
+    """Return how many students there are, how many have marks, and their mean, in one line."""
+    waiting = len({entry["student"] for entry in found["by_hand"]})
+    students = f"{found['students']} student{'s' if found['students'] != 1 else ''}"
+    mean = f", {found['mean_decimal']} of {decimal(Fraction(found['total']))} on average" if found["mean"] else ""
+    return f"{students}, {waiting} of them not yet marked: to be read by hand{mean}"
 
 
 def _with_variants(problems: ClassProblems, entries: Sequence[Submission]) -> tuple[list[Submission], dict[int, str]]:
@@ -331,6 +353,8 @@ def _with_variants(problems: ClassProblems, entries: Sequence[Submission]) -> tu
     """
     found, unknown = list(entries), {}
     for i, submission in enumerate(entries):
+        if submission.unread:
+            continue
         try:
             found[i] = replace(submission, variant=problems.variant_of(submission))
         except InputError as error:

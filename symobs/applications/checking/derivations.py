@@ -14,21 +14,31 @@ from symobs.applications.audit.differences import as_matrix, wrong_entries
 from symobs.applications.audit.evaluation import Misfit, common, equal, value_of
 from symobs.applications.audit.slips import SearchBudget
 from symobs.applications.checking.answers import Answer, Step, as_value, read_like
-from symobs.applications.checking.handwriting import in_letters, letters_of_entries
+from symobs.applications.checking.handwriting import EIGENVALUES, in_letters, named_entries
 from symobs.applications.checking.judgement import OF_THE_PLANT, exists, field_called, is_of_time
 from symobs.applications.checking.regions import SOME_PIECES, compare, part_described, read_conditions
 from symobs.applications.checking.report import Line
 from symobs.exact import Matrix, Scalar, TooLarge
+from symobs.exact.algebraic.rounded_decimals import polynomial_of
+from symobs.formula.expression import parse_poles
 from symobs.formula.expression.syntax import SyntaxNode, letters_of
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import BudgetExceeded, CertificateRejected, NotShown, ProblemErrors, SymobsError, UnknownName
+from symobs.ground.errors import (
+    BudgetExceeded,
+    CertificateRejected,
+    InputError,
+    NotShown,
+    ProblemErrors,
+    SymobsError,
+    UnknownName,
+)
 from symobs.problem.expect import found_in, met, names_of
 from symobs.proof.certificate.claims import UNREADABLE
 from symobs.tasks.analysis.rank.observability import controllability_rank, observability_rank
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
     from fractions import Fraction
 
     from symobs.applications.audit.auditor import PrintedEntry
@@ -255,30 +265,28 @@ class _Derivation:
         return auditor(self.problem, list(self.right.values()), self.views[0].convention, self.budget, known)
 
     def _entries(self, results: Iterable[Result]) -> dict[str, Scalar]:
-        """Return the entries of gains that are rows or columns by their letters, l1, l2, ..."""
+        """Return the entries of gains and matrices by their letters, l1, l2, p11, ..."""
         found: dict[str, Scalar] = {}
         for result in results:
-            own = ResultInConvention(result, self.views[0].convention)
-            for letter, names in letters_of_entries(own).items():
-                found |= dict(zip(names, own.fields[letter].entries, strict=True))
+            found |= named_entries(ResultInConvention(result, self.views[0].convention))
         return found
 
     def auditor_of_own(self) -> LineAuditor:
         """Return the auditor with the student's values of letters, and with what follows from the student's gains."""
-        results = []
+        results, follows = [], dict[str, Any]()
         for view in self.views:
             result = self.right[view.task]
-            gains = {
-                view.standard(letter)[0]: -value if view.standard(letter)[1] < 0 else value
-                for letter, (value, _) in self.bound.items()
-                if view.standard(letter)[0] in result.gains and isinstance(value, Matrix)
-            }
-            try:
-                results.append(result.following_from(gains) if gains else result)
-            except (SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
-                results.append(result)
+            named = {view.standard(letter): value for letter, (value, _) in self.bound.items()}
+            standard = {name: -value if sign < 0 else value for (name, sign), value in named.items()}
+            gains = {k: value for k, value in standard.items() if k in result.gains and isinstance(value, Matrix)}
+            leads = {k: value for k, value in standard.items() if k in result.leads}
+            with suppress(SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
+                result = result.following_from(gains) if gains else result
+                found = result.consequences(leads) if leads else {}
+                follows |= {view.letter_of(k): v for k, v in found.items() if isinstance(v, (Scalar, Matrix))}
+            results.append(result)
         own = {letter: value for letter, (value, _) in self.bound.items()}
-        known = {**self.symbols, **self._entries(results), **own}
+        known = {**self.symbols, **self._entries(results), **follows, **own}
         return auditor(self.problem, results, self.views[0].convention, self.budget, known)
 
     def origins(self, letters: set[str]) -> tuple[str, ...]:
@@ -406,8 +414,42 @@ def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     step = replace(step, relation=in_letters(written, names, variable))
     if is_of_conditions(step.relation):
         return _of_conditions(state, step)
+    if (line := _of_an_eigenvalue(state, step, names)) is not None:
+        return replace(line, relation=written)
     of_time = of_function_of_time(step, state.views, lambda member: _audited(state, member, answer))
     return replace(of_time or _audited(state, step, answer), relation=written)
+
+
+_NUMBERED = re.compile(rf"\s*((?:{EIGENVALUES})_?\d)\s*=\s*([^=]+)")
+
+
+def _of_an_eigenvalue(state: _Derivation, step: Step, names: Collection[str]) -> Line | None:
+    """Return whether a line lambda_1 = -2 names an eigenvalue of A, of a loop, or of an answer; None for any other line."""
+    found = _NUMBERED.fullmatch(step.relation)
+    if found is None or found[1] in names:
+        return None
+    variable = state.problem.plant.variable
+    try:
+        roots = parse_poles(found[2], functions=True)
+        pair = dict.fromkeys((*roots, *(root.conjugate() for root in roots)))
+        factor = polynomial_of([*pair], variable)
+        known = [value for result in state.right.values() for value in _polynomials(result)]
+    except (InputError, ValueError, TypeError, TooLarge):
+        return None
+    is_one = any((polynomial / factor).is_polynomial_in(variable) for polynomial in known)
+    reason = "" if is_one else "this is no eigenvalue here"
+    return Line(step.where, step.relation, "true" if is_one else "false", reason=reason)
+
+
+def _polynomials(result: Result) -> Iterator[Scalar]:
+    """Yield the characteristic polynomials of A, of the loop, and of square answers."""
+    fields, variable = result.fields, result.plant.variable
+    answers = [fields.get(name) for name in (*result.answered_by, *result.leads, "closed_loop_matrix", "A")]
+    for value in (fields.get("polynomial"), result.plant.matrices.A, *answers):
+        if isinstance(value, Scalar) and value.is_polynomial_in(variable):
+            yield value
+        elif isinstance(value, Matrix) and value.shape[0] == value.shape[1] and variable not in value.names:
+            yield value.characteristic_polynomial(variable)
 
 
 def _audited(state: _Derivation, step: Step, answer: Answer) -> Line:

@@ -10,7 +10,7 @@ import re
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Any
 
-from symobs.exact import Matrix
+from symobs.exact import Matrix, Scalar
 from symobs.formula.expression.names import spellings
 from symobs.formula.notation import GREEK_LETTERS, LETTERS
 from symobs.ground.errors import InputError
@@ -19,6 +19,31 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
     from symobs.tasks.result.in_convention import ResultInConvention
+
+
+# -- marks of documents ------------------------------------------------------------------------------------------------
+
+
+_DOCUMENT = re.compile(r"\\begin\{document\}(.*?)(?:\\end\{document\}|\Z)", re.DOTALL)
+_FENCE = re.compile(r"(?m)^[ \t]*(?:```|~~~).*$")
+#: What stands before a definition in a list, - L = …, a) L = …, and in the prompt of a program.
+_BULLET = re.compile(
+    r"(?m)^[ \t]*(?:[-*+•][ \t]+|\(?(?:\d{1,2}|[a-z])\)[ \t]+|\d{1,2}\.[ \t]+|>>>?[ \t]*)"
+    r"(?=[$*`\\]{0,2}\w[^=\n]{0,40}=)"
+)
+_STRONG = re.compile(r"(?<![\w)\]])(\*\*|__|`+)(?=\S)([^\n]*?\S)\1(?![\w(])")
+#: Statements of programs that define nothing.
+_STATEMENT = re.compile(
+    r"(?m)^[ \t]*(?:(?:import|from|print|disp|display|fprintf|clear|clc|close|format|syms|pkg)\b|init_printing|plt\.)[^=\n]*$"
+)
+
+
+def without_marks(text: str) -> str:
+    """Return a text without the marks of Markdown and LaTeX around it, and without statements that define nothing."""
+    if found := _DOCUMENT.search(text):
+        text = found[1]
+    text = _BULLET.sub("", _STATEMENT.sub("", _FENCE.sub("", text)))
+    return _STRONG.sub(r"\2", text) if "`" in text or "**" in text or "__" in text else text
 
 
 # -- LaTeX -------------------------------------------------------------------------------------------------------------
@@ -47,9 +72,10 @@ _SIGNS |= {"approx": "≈", "le": "<=", "leq": "<=", "ge": ">=", "geq": ">="}
 
 def without_latex(text: str) -> str:
     """Return a text whose LaTeX is written as in problem files: [1, 2; 3, 4], (a)/(b), exp(-t), omega_0."""
-    if not re.search(r"\\[A-Za-z]|[\^_]\{", text):
+    if not re.search(r"\\[][()A-Za-z]|[\^_]\{|\$", text):
         return text
     text = re.sub(r"\\text\{[^{}]*\}\s*\\qquad", "", text)  # the words before a display
+    text = re.sub(r"(?<!\\)\\[][()]", " ", text)  # the signs around one
     text = re.sub(r"\\bar\s*\{?\s*([A-Za-z])\s*\}?", r"\1_bar", _SPACES.sub(" ", text))
     for _ in range(_DEEPEST):
         before = text
@@ -134,7 +160,7 @@ _TRANSPOSED = re.compile(r"(?P<inside>\[[^][]*\]|\([^()]*[,;][^()]*\))\s*(?:'|\^
 _TURNED = re.compile(r"\b(?:np\.)?transpose\(\s*(\[[^][]*\])\s*\)")
 _MATRIX = re.compile(r"\[[^][]*\]")
 #: Letters of matrices and the variable as a product without blanks: sI, BK, LC.
-_TOGETHER = re.compile(r"\b(?:[sz]I|(?!AND|OR\b)[A-Z]{2,3})\b")
+_TOGETHER = re.compile(r"(?:\b|(?<=[-^]\d))(?:[sz]I|(?!AND|OR\b)[A-Z]{2,4})\b")
 _INDEXED = re.compile(r"\b([A-Za-z]+)(_?)(\d+)\b")
 _SQUARE_ROOT = re.compile(
     r"(?<![\w.])(?!e\b)(\d+|[A-Za-z]\w*|\([^()]*\))\s*\^\s*(?:\(\s*1/2\s*\)|0?\.5(?![\d.]))|\bsqrt\s*(\d+)(?![\w.(])"
@@ -150,9 +176,48 @@ _EXPONENTIAL = re.compile(
 _DECIMAL_FACTOR = re.compile(r"(\d+\.\d+)(?=(?!e[-+]?\d)[A-Za-z(])")
 
 
+#: Functions of a matrix before its letter, det O, and what else they are called.
+_OF_LETTER = re.compile(
+    r"(?<![\w\\])(det|rank|[Rr]ang|rg|rk|trace|tr|[Ss]pur)\s+(?=([A-ZΠΓ]\w*)(?![\w(])\s*(?:[=<>!≠]|$))\2"
+)
+_FUNCTIONS = {"rang": "rank", "rg": "rank", "rk": "rank", "tr": "trace", "spur": "trace"}
+_CALLED_OTHERWISE = re.compile(r"(?<![\w\\])(?:[Rr]ang|rg|rk|tr|[Ss]pur)(?=\()")
+#: The transpose of a letter, A^T, A.T, and of a product of letters in parentheses.
+_LETTER_TURNED = re.compile(
+    r"((?<![A-Za-z0-9_])[A-ZΠΓ](?:_?[a-z0-9])?|\([^()]*[A-ZΠΓ][^()]*\))\s*(?:\^\s*\(?T\)?(?!\w)|\.T\b|ᵀ)"
+)
+_INVERSE = re.compile(r"(?<!\w)inv\(\s*([A-Z]\w*)\s*\)")
+_DIAGONAL = re.compile(r"(?<!\w)(?:np\.|sp\.)?(?:diag|Diag)\(\s*\[?([^()\[\]]*)\]?\s*\)")
+_UNIT = re.compile(r"(?<!\w)(?:(?:np\.|sp\.)?eye\(\s*(\d)\s*\)|(?:np\.)?identity\(\s*(\d)\s*\)|I_(\d)(?!\w))")
+_ZEROS = re.compile(r"(?<!\w)(?:np\.)?zeros\(\s*\(?(\d)\s*,\s*(\d)\)?\s*\)")
+#: Values at an instant that have letters of their own: x(0), x_1(0), W(0, T).
+_AT_ZERO = re.compile(r"(?<![A-Za-z])x(?:_?(\d))?\(\s*(?:0|t_?0)\s*\)")
+_OVER_TIME = re.compile(r"(?<![A-Za-z])(W(?:_\w+)?)\(\s*(?:0\s*,\s*)?[A-Za-z]\w*\s*\)(?=\s*=)")
+
+
+def unit_matrix(order: int) -> str:
+    """Return the text of an identity matrix."""
+    return _written([[str(int(i == j)) for j in range(order)] for i in range(order)])
+
+
+def _diagonal(found: re.Match[str]) -> str:
+    entries = re.split(r"\s*,\s*" if "," in found[1] else r"\s+", found[1].strip())
+    return _written([[entry if i == j else "0" for j in range(len(entries))] for i, entry in enumerate(entries)])
+
+
+def in_matrices(text: str) -> str:
+    """Return a text with diag(1, 2), eye(2), I_2 and zeros(1, 2) written out, and with det(O), rank(O), A', R^-1 and x0."""
+    text = _AT_ZERO.sub(lambda f: f"x0_{f[1]}" if f[1] else "x0", _OVER_TIME.sub(r"\1", text))
+    text = _OF_LETTER.sub(lambda f: f"{_FUNCTIONS.get(f[1].lower(), f[1])}({f[2]})", text)
+    text = _CALLED_OTHERWISE.sub(lambda f: _FUNCTIONS[f[0].lower()], text)
+    text = _INVERSE.sub(r"\1^-1", _LETTER_TURNED.sub(r"\1'", text))
+    text = _UNIT.sub(lambda f: unit_matrix(int(f[1] or f[2] or f[3])), _DIAGONAL.sub(_diagonal, text))
+    return _ZEROS.sub(lambda f: _written([["0"] * int(f[2])] * int(f[1])), text)
+
+
 def readable(text: str) -> str:
     """Return the text of a value as a problem file has it."""
-    text = without_latex(text).replace("÷", "/")
+    text = in_matrices(without_latex(text).replace("÷", "/"))
     text = _SQUARE_ROOT.sub(lambda f: f"sqrt({f[1].strip('()') if f[1] else f[2]})", text)
     text = _BEFORE_MATRIX.sub(r"(\1)*", text)
     text = _RATIONAL.sub(lambda f: f"(({f[1].strip(QUOTES)})/({f[2] or 1}))", text)
@@ -358,7 +423,7 @@ _AROUND = frozenset(
 
 def plain_line(line: str) -> str:
     """Return a line without the words before its relation and the point behind it, its letter on the left alone."""
-    line = _ARROW.sub("", line, count=1) if _ARROW.match(line) else line
+    line = in_matrices(_ARROW.sub("", line, count=1) if _ARROW.match(line) else line)
     words = _LEADING.match(line)
     if words and {*re.findall(r"[^\W\d_]+", words[0].lower())} <= _AROUND:
         line = line[words.end() :]
@@ -478,35 +543,79 @@ def with_own_letters(value: Any, values: Mapping[str, Any], known: Collection[st
     return value
 
 
+#: What eigenvalues are called, before their numbers.
+EIGENVALUES = "s|p|lambda|lam|λ"
+
+
 def entries_of(view: ResultInConvention, values: Mapping[str, Any]) -> dict[str, list[Any]]:
-    """Return the gains, rows or columns, of which all entries are given: l1 = 16, l2 = 80."""
+    """Return the gains, rows or columns, and the matrices of which all entries are given: l1 = 16, l2 = 80; p11 = 2, ..."""
     found = {}
     for letter, names in letters_of_entries(view).items():
-        given = [next((values[n] for n in (name, f"{name[0]}_{name[1:]}") if n in values), None) for name in names]
-        if names and all(entry is not None for entry in given):
-            found[letter] = given
+        right = _entries_by_letter(view, letter)
+        given = [[next((values[n] for n in each if n in values), None) for each in row] for row in names]
+        if right is not None and right == right.T:  # of a symmetric matrix half of them are enough
+            given = [
+                [b if a is None else a for a, b in zip(*pair, strict=True)]
+                for pair in zip(given, zip(*given, strict=True), strict=True)
+            ]
+        if names and all(entry is not None for row in given for entry in row):
+            alone = [entry for row in given for entry in row]
+            found[letter] = given if len(given) > 1 and len(given[0]) > 1 else alone
+    return found
+
+
+def _entries_by_letter(view: ResultInConvention, letter: str) -> Matrix | None:
+    """Return what has this letter as a matrix, a list as a column; None for anything else."""
+    value = view.fields.get(letter)
+    if isinstance(value, Matrix):
+        return value
+    if isinstance(value, list) and value and all(isinstance(entry, Scalar) for entry in value):
+        return Matrix.column(value)
+    return None
+
+
+def named_entries(view: ResultInConvention) -> dict[str, Scalar]:
+    """Return the values of the entries of gains and matrices by their names, p11 and p_11."""
+    found: dict[str, Scalar] = {}
+    for letter, names in letters_of_entries(view).items():
+        right = _entries_by_letter(view, letter)
+        for row, values in zip(names, right.rows if right is not None else (), strict=False):
+            for each, value in zip(row, values, strict=True):
+                found |= dict.fromkeys(each, value)
     return found
 
 
 def listed_of(view: ResultInConvention, values: Mapping[str, Any]) -> dict[str, list[Any]]:
     """Return the poles or zeros that are numbered: s1 = -1, s2 = -2."""
     found = {}
-    for field, letters in (("poles", "s|p|lambda"), ("roots", "s|p|lambda"), ("zeros", "z|n")):
+    for field, letters in (("poles", EIGENVALUES), ("roots", EIGENVALUES), ("zeros", "z|n")):
         if view.result.fields.get(field):
             numbered = {n[1]: values[key] for key in values if (n := re.fullmatch(rf"(?:{letters})_?(\d)", key))}
-            if [*numbered] == [str(k) for k in range(1, len(numbered) + 1)] and numbered:
+            all_of_them = [str(k) for k in range(1, len(view.result.fields[field]) + 1)]
+            if sorted(numbered) == all_of_them:  # fewer of them are lines
                 found[field] = [*numbered.values()]
     return found
 
 
-def letters_of_entries(view: ResultInConvention) -> dict[str, list[str]]:
-    """Return the letters k1, k2, … of the entries of each gain that is a row or a column, and no name of the problem."""
-    known = view.plant.symbols.signs
+def letters_of_entries(view: ResultInConvention) -> dict[str, list[list[tuple[str, str]]]]:
+    """Return the letters of the entries by rows, k1 and k_1, p11 and p_11, x0_1: of gains, of matrices with one letter.
+
+    Those of the plant, and names of the problem, have no entries here.
+    """
+    known, result = view.plant.symbols.signs, view.result
     found = {}
-    for gain in view.result.gains:
-        value = view.result.fields.get(gain)
-        letter = view.letter_of(gain)
-        if isinstance(value, Matrix) and 1 in value.shape and len(letter) == 1:
-            names = [f"{letter.lower()}{k}" for k in range(1, len(value.entries) + 1)]
-            found[letter] = names if not {*names} & {*known} else []
+    for field in dict.fromkeys((*result.gains, *result.answered_by, *result.leads)):
+        letter = view.letter_of(field)
+        value = _entries_by_letter(view, letter)
+        if value is None or letter in {"A", "B", "C", "D"} or len(letter.rstrip("0")) != 1:
+            continue
+        rows, columns = value.shape
+        own = letter.lower()
+        line = "_" if own[-1].isdigit() else ""  # x0_1
+        ends = [
+            [f"{i + 1}{j + 1}" if min(rows, columns) > 1 else f"{max(i, j) + 1}" for j in range(columns)]
+            for i in range(rows)
+        ]
+        names = [[(f"{own}{line}{end}", f"{own}_{end}") for end in row] for row in ends]
+        found[letter] = [] if {name for row in names for each in row for name in each} & {*known} else names
     return found

@@ -265,11 +265,12 @@ def _modal_coordinates(result: CanonicalForm, given: Mapping[str, Matrix]) -> Ma
 
 
 class _Other:
-    """A form in another layout or scaling: the fields of a result, with those of its coordinates in place of its own."""
+    """A result with some fields in place of its own: those of other coordinates, or what follows from wrong parts."""
 
     def __init__(self, result: Result, moved: Mapping[str, Any]) -> None:
         self.result = result
         self.fields = {**result.fields, **moved}
+        self.claimed = tuple(name for name in result.claimed if name not in moved)
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.result, name)
@@ -437,6 +438,8 @@ class _Task:
     marking: Marking
     right: Result
     gains: dict[str, Matrix] = field(default_factory=dict)
+    #: The values of earlier parts besides gains that are wrong.
+    leads: dict[str, Any] = field(default_factory=dict)
     wrong: tuple[str, ...] = ()
     own: Result | None = None
     #: Whether one of two gains is given that are not unique, and right or wrong together.
@@ -474,12 +477,27 @@ def judge_task(
             parts[name] = _gain(task, part)
     if "L" not in asked and (name := task.right.shows_gain) in asked:
         task.right = _with_gain_behind(task, asked[name])
-    if task.wrong:
-        with suppress(SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
-            task.own = task.right.following_from(task.gains)
+    _follow(task)
+    for name in task.right.leads:
+        if name in asked and name not in parts:
+            parts[name] = _judged(task, asked[name])
+            if parts[name].verdict == "wrong" and parts[name].value is not None:
+                task.leads[name], task.wrong = parts[name].value, (*task.wrong, name)
+                _follow(task)
     parts |= _in_coordinates(task, [part for part in each if part.name in task.right.in_coordinates])
     parts |= {name: _judged(task, part) for name, part in asked.items() if name not in parts}
     return TaskJudgement((*(parts[name] for name in asked), *unread), task.right, task.own)
+
+
+def _follow(task: _Task) -> None:
+    """Find what follows from the parts that are wrong so far, in place of what followed from fewer."""
+    if not task.wrong:
+        return
+    with suppress(SymobsError, ArithmeticError, ValueError, AttributeError, TypeError):
+        own = task.right.following_from(task.gains)
+        if task.leads:
+            own = _Other(own, {**own.consequences(task.leads), **task.leads})  # type: ignore[assignment]
+        task.own = own
 
 
 def _unreadable(part: Judged, error: SymobsError) -> Judged:

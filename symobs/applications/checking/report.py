@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 # The report on an answer: verdicts, marks, and reasons, as data.
 
 
+#: Verdicts on parts that have no marks before a human has read them.
+TO_BE_READ = ("unreadable", "undecided")
 #: What a report gives away, the least first: right or wrong; where; why, and what the value does; the solution.
 SHOW = ("verdict", "place", "reason", "solution")
 
@@ -100,22 +102,30 @@ class ReportData:
 
     @property
     def total(self) -> Fraction:
-        """The marks of an answer that is right."""
-        return self._weights if self.marks is None else self.marks
+        """The marks of an answer that is right, those of its milestones among them."""
+        return self._weights + self._points if self.marks is None else self.marks
 
     @property
     def _weights(self) -> Fraction:
-        return sum((part.weight for part in self.parts), Fraction(0)) + sum(
-            (m[1] for m in self.milestones), Fraction(0)
-        )
+        return sum((part.weight for part in self.parts), Fraction(0))
+
+    @property
+    def _points(self) -> Fraction:
+        return sum((points for _, points, _ in self.milestones), Fraction(0))
+
+    @property
+    def by_hand(self) -> list[Part]:
+        """The parts that count and cannot be read, or are undecided: a human has to look at them."""
+        return [part for part in self.parts if part.weight and part.verdict in TO_BE_READ]
 
     @property
     def score(self) -> Fraction | None:
-        """The marks of this answer."""
-        if any(part.credit is None for part in self.parts) or not self._weights:
+        """The marks of this answer; None while a part is to be looked at by hand."""
+        if self.by_hand or not self._weights + self._points:
             return None
         got = sum((part.weight * (part.credit or 0) for part in self.parts), Fraction(0))
-        return (got + sum((m[1] for m in self.milestones if m[2]), Fraction(0))) / self._weights * self.total
+        met = sum((points for _, points, is_met in self.milestones if is_met), Fraction(0))
+        return met + (got / self._weights * (self.total - self._points) if self._weights else 0)
 
     @property
     def first_false(self) -> str | None:
@@ -381,7 +391,7 @@ def text(report: ReportData) -> str:
         said = f": {of_numbers(line.reason)}" if line.reason else ""
         right = f" (right: {of_numbers(line.right)})" if line.right else ""
         lines += _wrapped(printable(f"{line.where} is {line.verdict}: {line.relation}{said}{right}"), 2)
-    lines += [line for hint in report.hints for line in _wrapped(printable(hint), 2)]
+    lines += [line for hint in remarks(report) for line in _wrapped(printable(hint), 2)]
     lines += _wrapped(printable(result(report)), 2)
     return "\n".join([*lines, ""])
 
@@ -400,7 +410,7 @@ def markdown(report: ReportData) -> str:
     for line in shown_lines(report):
         said = f": {of_numbers(line.reason)}" if line.reason else ""
         lines += ["", plain(f"{line.where} is {line.verdict}: {line.relation}{said}")]
-    for hint in report.hints:
+    for hint in remarks(report):
         lines += ["", plain(hint)]
     return "\n".join([*lines, "", plain(result(report)), ""])
 
@@ -463,10 +473,19 @@ def beginning(written: str) -> str:
     return shown(" ".join(written.split()), LONGEST)
 
 
+def remarks(report: ReportData) -> Iterator[str]:
+    """Yield what is said of the answer as a whole: hints, and the marks of milestones that are not met."""
+    yield from report.hints
+    for number, (relation, points, is_met) in enumerate(report.milestones, start=1):
+        if not is_met:
+            name = f"the line {of_numbers(relation)}" if relation else f"step {number} of the derivation"
+            yield f"{name} is not shown: {decimal(points)} of the marks"
+
+
 def result(report: ReportData) -> str:
     """Return the verdict and the score in one sentence."""
     if report.score is None:
-        return f"{report.verdict}: this answer is to be marked by hand"
+        return f"{report.verdict}: not yet marked, to be marked by hand"
     return f"{report.verdict}: {decimal(report.score)} of {decimal(report.total)}"
 
 
@@ -490,8 +509,8 @@ _WORDS = {
     "follows": "✓ follows from your earlier result",
     "wrong": "✗ wrong",
     "missing": "– missing",
-    "unreadable": "? cannot be read",
-    "undecided": "? to be marked by hand",
+    "unreadable": "? cannot be read, not yet marked",
+    "undecided": "? not yet marked, to be marked by hand",
     "true": "✓",
     "false": "✗ false",
 }
@@ -505,7 +524,7 @@ def html(report: ReportData) -> str:
     head += [f'<p class="score"><strong>{plain(result(report))}</strong></p>']
     names = names_of(report)
     parts = [line for part in report.parts for line in _section(part, names)]
-    hints = [f"<p>{plain(hint)}</p>" for hint in report.hints]
+    hints = [f"<p>{plain(_sentence(hint))}</p>" for hint in remarks(report)]
     lines = ["<h2>Your derivation</h2>", '<ol class="derivation">', *map(_line, report.lines), "</ol>"]
     solution = ["<h2>Solution</h2>", report.page] if report.page else []
     return page(title, "\n".join([_STYLE, *head, *parts, *hints, *(lines if report.lines else []), *solution]))

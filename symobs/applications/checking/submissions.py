@@ -1,4 +1,4 @@
-"""The submissions of a class: a CSV table, JSON Lines, or a folder of answer files."""
+"""The submissions of a class, a CSV table, JSON Lines, or a folder of files, and the problems that they answer."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import csv
 import io
 import json
 import re
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from symobs.applications.batch.jobs import Job, canonical, digest, job
 from symobs.applications.checking.answers import MAX_BYTES, Answer, read_answer
 from symobs.applications.checking.checker import Checked
+from symobs.applications.checking.folders import counting, decoded, files_of, written_place
 from symobs.applications.checking.report import CheckReport
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
@@ -26,15 +27,18 @@ if TYPE_CHECKING:
 
 MAX_TABLE_BYTES = 64 * 1024 * 1024
 #: Columns with a meaning of their own; every other one is a part, or is left alone.
-OWN = ("student", "convention", "variant", "steps")
-_FILES = (".toml", ".json", ".txt")
+OWN = ("student", "convention", "variant", "steps", "answer")
 #: The line above the header with which spreadsheets say what sets cells apart.
 _SEPARATOR = re.compile(r'"?sep=([;,\t])"?')
 
 
 @dataclass
 class Submission:
-    """What one student handed in: the text of an answer file, or values by field and the lines of the derivation."""
+    """What one student handed in: the text of an answer file, or values by field and the lines of the derivation.
+
+    note     how the file was read, where that is worth a word
+    unread   why there is no text to be read at all
+    """
 
     student: str
     variant: str | None = None
@@ -42,18 +46,26 @@ class Submission:
     values: Mapping[str, Any] | None = None
     convention: str = ""
     steps: str = ""
+    note: str = ""
+    unread: str = ""
 
 
 @dataclass
 class Submissions:
-    """The submissions that count, in the order of the input, and the places of those that a later one replaced.
+    """The submissions that count, in the order of the input, and the places of those that another one replaced.
 
     columns   the names of the columns of a table, as they were mapped
+    places    where the submission of each student stands that counts
+    left_out  files that could not be read: the student, the place, and why
+    note      how the table was read, where that is worth a word
     """
 
     entries: tuple[Submission, ...]
     superseded: tuple[tuple[str, str], ...] = ()
     columns: tuple[str, ...] = ()
+    places: Mapping[str, str] = field(default_factory=dict)
+    left_out: tuple[tuple[str, str, str], ...] = ()
+    note: str = ""
 
 
 def read_submissions(path: Path, known: Collection[str], columns: Mapping[str, str]) -> Submissions:
@@ -62,24 +74,43 @@ def read_submissions(path: Path, known: Collection[str], columns: Mapping[str, s
     `known` are the names of parts that a column may have, `columns` name a column's field.
     """
     if path.is_dir():
-        found = [(str(file.name), _of_file(file)) for file in sorted(path.iterdir()) if file.suffix in _FILES]
-        if not found:
-            raise _wrong(str(path), "there is no answer file in this folder", f"its files end in {', '.join(_FILES)}")
-        return _last(found)
+        return _of_folder(path)
     names: tuple[str, ...] = ()
-    text = text_of_file(path)
-    if path.suffix == ".jsonl":
+    text, note = _text_and_note(path, "give a CSV or JSON Lines file in UTF-8, or a folder")
+    if path.suffix.lower() in {".jsonl", ".ndjson"}:
         found = _of_json_lines(text, path)
     else:
         names, found = _of_csv(text, path, known, columns)
     if not found:
         raise _wrong(str(path), f"no student in {shown(path.name, 60)}", "write a line for each below the header")
-    return replace(_last(found), columns=names)
+    return replace(_last(found), columns=names, note=note)
+
+
+def _of_folder(path: Path) -> Submissions:
+    """Return the submissions of a folder: a file of each student, or a folder of each; no file is passed over."""
+    entries: list[Submission] = []
+    superseded: list[tuple[str, str]] = []
+    places: dict[str, str] = {}
+    left_out: list[tuple[str, str, str]] = []
+    for files in files_of(path):
+        student, chosen = files[0].student, counting(files)
+        left_out += [(student, file.place, file.reason) for file in files if file.reason]
+        if chosen is None:
+            why = "; ".join(f"{written_place(file.place)}: {file.reason}" for file in files)
+            entries.append(Submission(student, unread=why))
+            continue
+        entries.append(Submission(student, text=chosen.text, note=chosen.note))
+        places[student] = chosen.place
+        superseded += [(student, file.place) for file in files if not file.reason and file is not chosen]
+    if not entries:
+        raise _wrong(str(path), "this folder is empty", "give one with a file, or a folder, of each student")
+    return Submissions(tuple(entries), tuple(superseded), places=places, left_out=tuple(left_out))
 
 
 def not_held(columns: Sequence[str], asked: Collection[Collection[str]], known: Collection[str]) -> str:
     """Return a line on the parts that no column of a table holds, each by the names it may have; none: an empty one."""
-    lacking = [next(iter(names)) for names in asked if columns and not {*names} & {*columns}]
+    whole = not columns or "answer" in columns
+    lacking = [next(iter(names)) for names in asked if not whole and not {*names} & {*columns}]
     unused = [name for name in columns if name and name not in known and name not in OWN]
     if not lacking:
         return ""
@@ -92,27 +123,25 @@ def _wrong(where: str, message: str, repair: str) -> ProblemErrors:
     return ProblemErrors((InputError(message, where=shown(where, 200), repair=repair),))
 
 
-def text_of_file(path: Path, repair: str = "give a CSV or JSON Lines file in UTF-8, or a folder") -> str:
+def text_of_file(path: Path, repair: str) -> str:
     """Return the text of a table; raises `ProblemErrors` where it cannot be read."""
+    return _text_and_note(path, repair)[0]
+
+
+def _text_and_note(path: Path, repair: str) -> tuple[str, str]:
+    """Return the text of a table and a note on its encoding; raises `ProblemErrors` where it cannot be read."""
     try:
         with path.open("rb") as stream:
             raw = stream.read(MAX_TABLE_BYTES + 1)
         if len(raw) > MAX_TABLE_BYTES:
             raise _wrong(str(path), "the file is larger than 64 MB", "hand in fewer answers at once")
-        return raw.decode("utf-8-sig")
-    except (OSError, ValueError) as error:
-        if isinstance(error, SymobsError):
-            raise
+        return decoded(raw)
+    except OSError as error:
         raise _wrong(str(path), reason_of(error), repair) from None
-
-
-def _of_file(path: Path) -> Submission:
-    """Return an answer file; one that cannot be read is the student's, and says so in the report."""
-    try:
-        text = path.read_bytes()[: 2 * 64 * 1024].decode("utf-8-sig")
-    except (OSError, ValueError) as error:
-        text = f"? {reason_of(error)}"
-    return Submission(path.stem, text=text)
+    except ProblemErrors:
+        raise
+    except InputError as error:
+        raise _wrong(str(path), error.message, repair) from None
 
 
 def _last(found: Sequence[tuple[str, Submission]]) -> Submissions:
@@ -120,7 +149,7 @@ def _last(found: Sequence[tuple[str, Submission]]) -> Submissions:
     last = {submission.student: i for i, (_, submission) in enumerate(found)}
     kept = tuple(submission for i, (_, submission) in enumerate(found) if last[submission.student] == i)
     gone = tuple((s.student, place) for i, (place, s) in enumerate(found) if last[s.student] != i)
-    return Submissions(kept, gone)
+    return Submissions(kept, gone, places={student: found[i][0] for student, i in last.items()})
 
 
 # -- CSV --------------------------------------------------------------------------------------------------------------
@@ -192,8 +221,14 @@ def _of_header(
             note(f"{shown(name, 40)} is no part", f'map "{shown(column, 40)}" to one of {", ".join([*OWN, *known])}')
     if "student" not in names:
         note("there is no column student", 'name one so, or write --map "Email address=student"')
-    if not any(name in known or name == "steps" for name in used):
-        note("no column is a part of the answer", f"name one of {', '.join(known)}")
+    whole = {"steps", "answer"}
+    if not any(name in known or name in whole for name in used):
+        columns_there = [name.strip() for name in written if name.strip() and name.strip() not in OWN]
+        example = shown(columns_there[0], 40) if columns_there else "Response 1"
+        repair = f'name one of {", ".join(known)}, or write --map "{example}=answer" for a column of whole answers'
+        note("no column is a part of the answer", repair)
+    if "answer" in used and any(name in known or name == "steps" for name in used):
+        note("a column answer holds whole answers, and others hold parts", "keep that column, or the others")
     for name in {name for name in used if used.count(name) > 1}:
         note(f"the column {name} stands twice", "keep one of them")
     for name in used:
@@ -207,6 +242,8 @@ def _of_cells(cells: Mapping[str, str]) -> Submission:
     values = {name: cell.strip() for name, cell in cells.items() if name not in OWN and cell.strip()}
     variant = cells.get("variant", "").strip() or None
     convention, steps = cells.get("convention", "").strip(), cells.get("steps", "")
+    if "answer" in cells:
+        return Submission(cells["student"].strip(), variant, cells["answer"], None, convention)
     return Submission(cells["student"].strip(), variant, None, values, convention, steps)
 
 
@@ -230,12 +267,15 @@ def _of_json_lines(text: str, path: Path) -> list[tuple[str, Submission]]:
                 InputError(
                     "an object with a student is expected",
                     where=place,
-                    repair='write {"student": "s1", "L": "[19; 81]"}',
+                    repair='write {"student": "s1", "text": "…"}, or the parts by their names',
                 )
             )
+        elif isinstance(whole := table.get("text", table.get("answer")), str):
+            chosen, convention = _word(table.get("variant")), _word(table.get("convention")) or ""
+            found.append((f"line {number}", Submission(table["student"], chosen, whole, None, convention)))
         elif {"answer", "step"} & table.keys():
-            variant = table.pop("variant", None)
-            found.append((f"line {number}", Submission(table["student"], _word(variant), line_of(table))))
+            variant = _word(table.pop("variant", None))
+            found.append((f"line {number}", Submission(table["student"], variant, line_of(table))))
         else:
             values = {name: value for name, value in table.items() if name not in OWN}
             own = [_word(table.get(name)) or "" for name in ("convention", "steps")]
@@ -409,7 +449,7 @@ def answer_of(submission: Submission) -> Answer:
         read_as = read_answer(submission.text)
         return Answer(
             submission.student,
-            read_as.convention,
+            submission.convention or read_as.convention,
             read_as.symbols,
             read_as.let,
             read_as.values,

@@ -10,7 +10,8 @@ import click
 
 from symobs.applications.checking import SHOW, Checked
 from symobs.applications.checking.checker import answer_file
-from symobs.cli.shared.common import place_of, read_file, run_work, write_message
+from symobs.applications.checking.folders import MOST_BYTES
+from symobs.cli.shared.common import place_of, read_bytes, read_file, run_work, write_message
 from symobs.cli.shared.options import LIMITS, WORKERS, options, quoted
 from symobs.cli.shared.outcome import Outcome, convention_of
 from symobs.cli.shared.output import check_target, make_folder, write_all
@@ -68,7 +69,8 @@ def command(
 
     A class is checked on all processors, --timeout and --memory are for each answer, and the same command after a run
     that was ended goes on.
-    Exit code 0: right; 4: wrong or incomplete; 3: unreadable; 5: undecided. For a class 0 where all have a verdict.
+    Exit code 0: right; 4: wrong or incomplete; 3: unreadable; 5: undecided. For a class 0 where all have a verdict, 3
+    where a file could not be read.
     """
     if format_name is not None and format_name not in FORMATS:
         raise UsageError(f"{quoted(format_name)} is not a format of this command", repair=f"take {', '.join(FORMATS)}")
@@ -96,8 +98,9 @@ def command(
             return Outcome(((answer_file(checked, convention), target),))
         assert answer is not None  # noqa: S101 - one of the three is there
         name = None if convention is None else convention_name
+        raw = read_bytes(answer, "an answer file", MOST_BYTES)
         return _outcome(
-            checked.report_of_text(read_file(answer, "an answer file"), place_of(answer), show, name),
+            checked.report_of_file(raw, place_of(answer), show, name),
             chosen,
             target,
         )
@@ -167,7 +170,7 @@ def _class(
 
     text = read_file(problem)
     problems = one_problem(text) if variants is None else class_variants(text, place_of(problem), Path(variants))
-    files, code = check_class(
+    files, said, code = check_class(
         problems,
         Path(problem).parent,
         Path(submissions),
@@ -184,4 +187,6 @@ def _class(
         make_folder(made)
     write_all([(content, str(folder / name)) for name, content in files.items()])
     discard_work(folder)
+    for line in (*said, f"results: {folder / 'summary.md'}, {folder / 'marks.csv'}"):
+        click.echo(line)
     sys.exit(code)

@@ -85,19 +85,24 @@ def read_file(file: str, kind: str = "a problem file") -> str:
     """Return the text of a file or of standard input, bounded in size; `kind` says what it is expected to be."""
     from symobs.problem import MAX_BYTES  # noqa: PLC0415
 
+    try:
+        return read_bytes(file, kind, MAX_BYTES).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(reason_of(error), where=place_of(file), repair="save the file as UTF-8 text") from None
+
+
+def read_bytes(file: str, kind: str, most: int) -> bytes:
+    """Return the bytes of a file or of standard input, at most so many; `kind` says what it is expected to be."""
     where = place_of(file)
     try:
         if file == "-":
-            raw: bytes = binary(sys.stdin).read(MAX_BYTES + 1)
+            raw: bytes = binary(sys.stdin).read(most + 1)
         else:
             with Path(file).open("rb") as stream:
-                raw = stream.read(MAX_BYTES + 1)
+                raw = stream.read(most + 1)
     except (OSError, ValueError) as error:  # ValueError: a name with a null byte
         repair = f"give the path of {kind}, or - for standard input"
         raise InputError(reason_of(error), where=where, repair=repair) from None
-    if len(raw) > MAX_BYTES:
-        raise InputError(f"the file is larger than {MAX_BYTES // 1024} kB", where=where, repair=f"give {kind} alone")
-    try:
-        return raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(reason_of(error), where=where, repair="save the file as UTF-8 text") from None
+    if len(raw) > most:
+        raise InputError(f"the file is larger than {most // 1024} kB", where=where, repair=f"give {kind} alone")
+    return raw

@@ -129,6 +129,14 @@ def plain(text: str) -> str:
     return _SPECIAL.sub(_harmless, printable(text))
 
 
+def code(text: str) -> str:
+    """Return external text as code on one line, which a cell of a table may hold: nothing in it is read as Markdown."""
+    line = " ".join(printable(text).split())
+    fence = "`" * (max(map(len, re.findall("`+", line)), default=0) + 1)
+    edge = " " if line[:1] == "`" or line[-1:] == "`" else ""
+    return f"{fence}{edge}{line}{edge}{fence}".replace("|", "\\|") if line else ""
+
+
 def paragraph(line: str) -> str:
     """Return a line, a leading mark of a list or heading escaped."""
     return _AT_START.sub(r"\1\\", line)

@@ -33,6 +33,8 @@ class TaskTraits(OutputMethods):
     shows_gain: ClassVar[str] = ""
     #: Fields of which one value is right, whatever else is answered: a grader outside symobs compares it.
     only_value: ClassVar[tuple[str, ...]] = ()
+    #: Earlier parts besides gains, in their order, from which other fields follow.
+    leads: ClassVar[tuple[str, ...]] = ()
     #: Fields that are right in many coordinates.
     in_coordinates: ClassVar[tuple[str, ...]] = ()
     #: What a page calls a function of time, without spaces and signs of products, and its field.
@@ -50,6 +52,11 @@ class TaskTraits(OutputMethods):
         Raises `InputError` where there is none.
         """
         return None
+
+    @property
+    def named_data(self) -> Mapping[str, Any]:
+        """The data and answers of the task by the letters of its equations, such as Q and R; they go before the plant's."""
+        return {}
 
     @property
     def loop_matrix(self) -> Matrix | None:
@@ -100,6 +107,10 @@ class TaskTraits(OutputMethods):
     def following_from(self, gains: Mapping[str, Matrix]) -> Self:  # noqa: ARG002 - for those that have gains
         """Return what follows from given gains, wherever they place the poles."""
         return self
+
+    def consequences(self, given: Mapping[str, Any]) -> Mapping[str, Any]:  # noqa: ARG002 - for those with `leads`
+        """Return the fields that follow from given values of earlier parts, right or wrong."""
+        return {}
 
     def design_of(self, gain: str) -> Any:
         """Return the design that owns the claim of a gain."""

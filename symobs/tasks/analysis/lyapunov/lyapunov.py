@@ -41,7 +41,7 @@ from symobs.tasks.analysis.time_response.horizons import (
 from symobs.tasks.result import Result, choose, holds, method, page_of, task
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from symobs.formula.tree import Environment
     from symobs.system import StateSpace
@@ -62,6 +62,7 @@ class LyapunovSolution(PutAgain):
     answered_by = ("P", "positive_definite")
     only_value = ("P", "positive_definite")
     claimed = ("P",)
+    leads = ("P",)
     letters = {"P": "P_l", "minors": "Delta"}
     cards = ("P",)
 
@@ -114,6 +115,20 @@ class LyapunovSolution(PutAgain):
         yield from self._about_minors(e)
 
     @property
+    def named_data(self) -> Mapping[str, Any]:
+        """Q and P."""
+        return {"Q": self.weight, "P": self.answer["P"]}
+
+    def consequences(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the minors of another symmetric P, and whether it is positive definite."""
+        P = given["P"]
+        if P.shape != self.weight.shape or P != P.T:
+            return {}
+        minors, signs = leading_minors(P), self.plant.symbols.signs
+        found = _all_positive(minors, signs)
+        return {"minors": [*minors], "positive_definite": found.verdict, "positive_if": found.inequalities(signs)}
+
+    @property
     def left(self) -> str:
         """The left side of the equation."""
         return "A.T*P*A - P" if self.plant.is_discrete else "A.T*P + P*A"
@@ -154,8 +169,7 @@ class LyapunovSolution(PutAgain):
     @property
     def lowest_minor(self) -> int | None:
         """The place of a minor that is never positive, where there is one."""
-        never = {"negative", "nonpositive", "zero"}
-        return next((k for k, m in enumerate(self.leading) if sign_of(m, self.plant.symbols.signs) in never), None)
+        return next((k for k, m in enumerate(self.leading) if sign_of(m, self.plant.symbols.signs) in _NEVER), None)
 
     @cached_property
     def definite(self) -> StabilityVerdict:
@@ -164,13 +178,7 @@ class LyapunovSolution(PutAgain):
         if self.leading and self.has_definite_weight:
             chi = plant.matrices.A.characteristic_polynomial(plant.variable)
             return stability(chi, plant.variable, signs, discrete=plant.is_discrete)
-        if not self.leading or self.lowest_minor is not None:
-            return StabilityVerdict("no")
-        needed = tuple(m for m in self.leading if sign_of(m, signs) != "positive")
-        found = simplify(needed, signs, ask=False)
-        if found.verdict == "no":  # several minors contradict each other, and none does alone
-            return StabilityVerdict("conditional", tuple(map(cleared, needed)))
-        return StabilityVerdict(found.verdict, found.positive)
+        return _all_positive(self.leading, signs) if self.leading else StabilityVerdict("no")
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
@@ -189,6 +197,21 @@ class LyapunovSolution(PutAgain):
         found = {"P": P, "solvable": self.verdict, "positive_definite": definite.verdict if self.leading else None}
         found |= {"positive_if": definite.inequalities(signs) if self.leading else None, "minors": list(self.leading)}
         return found | {"determinant": self.answer["determinant"], "homogeneous": self.answer["N"]}
+
+
+#: Signs of what is positive nowhere.
+_NEVER = {"negative", "nonpositive", "zero"}
+
+
+def _all_positive(minors: Sequence[Scalar], signs: Mapping[str, str]) -> StabilityVerdict:
+    """Return whether all minors are positive: yes, no, or what must be positive for them to be."""
+    if any(sign_of(minor, signs) in _NEVER for minor in minors):
+        return StabilityVerdict("no")
+    needed = tuple(minor for minor in minors if sign_of(minor, signs) != "positive")
+    found = simplify(needed, signs, ask=False)
+    if found.verdict == "no":  # several minors contradict each other, and none does alone
+        return StabilityVerdict("conditional", tuple(map(cleared, needed)))
+    return StabilityVerdict(found.verdict, found.positive)
 
 
 def _as_matrix(row: Matrix | None) -> Matrix:

@@ -16,6 +16,7 @@ from symobs.exact import (
     TooLarge,
     echelon,
     independent_rows,
+    kernel,
     modulo,
     rank,
     roots_of,
@@ -227,6 +228,7 @@ class RankResult(Result):
 
     piece: Piece | None = None
 
+    leads = ("matrix",)
     repaired_by: ClassVar[str]
 
     @classmethod
@@ -258,6 +260,17 @@ class RankResult(Result):
         yield equality(len(orders), 1, e, "the minors are of one order")
         yield from minors_claim(self.answer["matrix"], (first, *piece.minors[1:]), e, "here")
         yield from kernel_claims(self.answer["kernel"], self.answer["restricted"], e, "here")
+
+    def consequences(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return rank, determinant and kernel of another matrix."""
+        matrix = given["matrix"]
+        square = matrix.shape[0] == matrix.shape[1]
+        null = kernel(matrix if self.fields["matrix"] is self.answer["matrix"] else matrix.T)
+        return {
+            "rank": rank(matrix),
+            "determinant": matrix.determinant() if square else None,
+            "kernel": [[*null.select(range(null.shape[0]), [j]).entries] for j in range(null.shape[1])],
+        }
 
     @cached_property
     def test_determinant(self) -> Scalar | None:

@@ -29,6 +29,7 @@ class CharacteristicPolynomial(Result):
     task: ClassVar[str] = "characteristic_polynomial"
     answered_by = ("polynomial",)
     only_value = ("polynomial",)
+    leads = ("polynomial",)
     letters = {"polynomial": "chi", "roots": "chi"}
 
     def claims(self) -> Iterator[Claim]:
@@ -52,6 +53,11 @@ class CharacteristicPolynomial(Result):
             "stable": found.verdict,
             "stable_if": found.inequalities(plant.symbols.signs),
         }
+
+    def consequences(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the roots of another polynomial."""
+        polynomial, variable = given["polynomial"], self.plant.variable
+        return {"roots": roots_of(polynomial, variable)} if polynomial.is_polynomial_in(variable) else {}
 
     def write(self, page: Builder) -> None:
         """Write the determinant, multiplied out and factored, and the roots."""

@@ -46,6 +46,7 @@ class TransferFunction(Result):
     task: ClassVar[str] = "transfer_function"
     answered_by = ("transfer_function",)
     only_value = ("transfer_function",)
+    leads = ("transfer_function",)
     letters = {"transfer_function": "P", "poles": "P"}
 
     def claims(self) -> Iterator[Claim]:
@@ -95,6 +96,13 @@ class TransferFunction(Result):
             "poles": roots_of(below, variable),
             "zeros": roots_of(above, variable) if above else (),
         }
+
+    def consequences(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return poles and zeros of another transfer function of one input and output."""
+        P, variable = given["transfer_function"], self.plant.variable
+        if not isinstance(P, Scalar) or P.is_zero:
+            return {}
+        return {"poles": roots_of(P.denominator, variable), "zeros": roots_of(P.numerator, variable)}
 
     @cached_property
     def decisive(self) -> tuple[tuple[Scalar, ...], ...]:

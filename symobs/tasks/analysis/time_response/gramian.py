@@ -118,6 +118,7 @@ class Gramian(DampingCases):
     task: ClassVar[str] = "gramian"
     answered_by = ("matrix",)
     only_value = ("matrix", "determinant")
+    leads = ("matrix",)
     letters = {"matrix": "W", "determinant": "det W", "finite_sum": "M", "kernel": "N"}
     asked_for: ClassVar[tuple[str, ...]] = ("horizon",)
 
@@ -289,6 +290,16 @@ class Gramian(DampingCases):
             yield holds(e, "det(W) = determinant")
         if "N" in e.values:
             yield holds(e, "W N = 0")
+
+    @property
+    def named_data(self) -> Mapping[str, Any]:
+        """W."""
+        return {"W": self.answer["matrix"]}
+
+    def consequences(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the determinant of another W."""
+        W = given["matrix"]
+        return {"determinant": W.determinant()} if W.shape[0] == W.shape[1] else {}
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:

@@ -129,6 +129,12 @@ class InitialState(OfTheInitialState):
         return cls(plant, method_name, {**answer, **_solved(test, derivatives_at_zero(free, plant.order), seen, free)})
 
     @property
+    def named_data(self) -> Mapping[str, Any]:
+        """The initial state."""
+        found = self.answer["x0"]
+        return {} if found is None else dict.fromkeys(("x0", "x_0"), found)
+
+    @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time."""
         names = (

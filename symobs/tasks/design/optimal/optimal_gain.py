@@ -82,6 +82,7 @@ class OptimalGain(Result):
     #: The signs that parameters need for the weights to have theirs, beyond the declared ones.
     needed: tuple[Condition, ...] = ()
 
+    leads = ("P", "K", "L")
     letter: ClassVar[str]
     design_kind: ClassVar[type[GainDesign]]
     #: What stands beside the gain among the answers.
@@ -145,6 +146,31 @@ class OptimalGain(Result):
         """The gain and P besides the plant's matrices: pages speak of these."""
         exact = {self.letter: self.answer[self.letter], "P_x": self.answer["P"]}
         return {**super().data, **({} if self.answer["P"] is None else exact)}
+
+    @property
+    def named_data(self) -> Mapping[str, Any]:
+        """The weights, or the intensities, and P."""
+        return {**self.weights, "P": self.answer["P"]}
+
+    def consequences(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the gain of another P, and the polynomial, the poles and the loop of that, or of another gain."""
+        r, P = self.regulator, given.get("P")
+        gain = given.get(self.letter)
+        if gain is None and P is not None and P.shape == r.A.shape:
+            weight, coupled = (r.R + r.B.T @ P @ r.B, r.B.T @ P @ r.A) if r.discrete else (r.R, r.B.T @ P)
+            gain = self.turned(weight.solve(coupled + r.N.T).normal())
+        if gain is None or gain.shape != self.shape_of_gain:
+            return {}
+        found = self.design_kind.of_given(self.plant, gain)
+        polynomial = found.answer["polynomial"]
+        own = {name: found.fields[name] for name in (*self.of_loop, "polynomial")}
+        return {self.letter: gain, **own, "poles": roots_of(polynomial, self.plant.variable)}
+
+    @property
+    def shape_of_gain(self) -> tuple[int, int]:
+        """The size of K, or of L."""
+        n, m = self.regulator.B.shape
+        return (m, n) if self.letter == "K" else (n, m)
 
     # -- claims ------------------------------------------------------------------------------------------------------
 

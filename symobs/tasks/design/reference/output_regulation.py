@@ -106,6 +106,7 @@ class OutputRegulation(Result):
     only_value = ("Pi", "Gamma")
     gains: ClassVar[tuple[str, ...]] = ("K",)
     claimed = ("Pi", "Gamma")
+    leads = ("Pi", "Gamma")
     letters: ClassVar[Mapping[str, str]] = {"Pi": "Pi_w", "Gamma": "Gamma_w", "K": "K", "F": "F_w"}
     cards: ClassVar[tuple[str, ...]] = ("K", "Pi", "Gamma", "F")
 
@@ -155,6 +156,26 @@ class OutputRegulation(Result):
         if estimator is not None and "L" in gains:
             estimator = estimator.following_from(self._parts(gains["L"]))
         return self._with(loop, estimator)
+
+    @property
+    def named_data(self) -> Mapping[str, Any]:
+        """S, Q_r, also called Q, and E of the exosystem, Π and Γ."""
+        S, Q, E = self.exogenous
+        return {"S": S, "Q_r": Q, "Q": Q, "E": E, "Pi": self.answer["Pi"], "Gamma": self.answer["Gamma"]}
+
+    def consequences(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return Γ with B Γ = ΠS − AΠ − E in the rows that B reaches, for another Π, and F = Γ + KΠ."""
+        m, (S, _, E) = self.plant.matrices, self.exogenous
+        Pi, Gamma, K = given.get("Pi", self.answer["Pi"]), given.get("Gamma"), self.answer["K"]
+        if Pi is None or Pi.shape != E.shape:
+            return {}
+        if Gamma is None:
+            reached = m.B.T @ m.B
+            if reached.determinant().is_zero:
+                return {}
+            Gamma = reached.solve(m.B.T @ (Pi @ S - m.A @ Pi - E)).normal()
+        own = K is not None and Gamma.shape == (K.shape[0], Pi.shape[1])
+        return {"Gamma": Gamma, **({"F": (Gamma + K @ Pi).normal()} if own else {})}
 
     def _with(self, loop: KnownState, estimator: DisturbanceObserver | None) -> Self:
         answer = {**self.answer, **_law(loop, self.answer, self.exogenous.order)}
