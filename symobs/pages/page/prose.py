@@ -108,7 +108,9 @@ def joined(inlines: Iterable[Inline]) -> Inlines:
     return tuple(result)
 
 
-def shown(slot: Formula | Fact | Counted | StateChoice | str, language: Language, last: str = ", ") -> Iterator[Inline]:
+def shown(
+    slot: Formula | Fact | LetterList | Counted | StateChoice | str, language: Language, last: str = ", "
+) -> Iterator[Inline]:
     """Yield the content of a slot: of a property its subject, of a region its inequalities; `last` before a last name."""
     if isinstance(slot, SPOKEN):
         yield language.put(slot)

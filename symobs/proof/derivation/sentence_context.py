@@ -36,10 +36,10 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from symobs.formula.phrases.languages import Counted, StateChoice
-    from symobs.formula.tree import Environment, Fact
+    from symobs.formula.tree import Environment, Fact, LetterList
 
 
-_Slots: TypeAlias = "Mapping[str, Formula | Fact | Counted | StateChoice | str]"
+_Slots: TypeAlias = "Mapping[str, Formula | Fact | LetterList | Counted | StateChoice | str]"
 #: The name under which it is remembered that stability is meant in the sense of Lyapunov from here on.
 WEAKER = "stable in the sense of Lyapunov"
 

@@ -113,7 +113,7 @@ def _changed(rows: list[list[str]], draw: random.Random, *, exact: bool) -> list
 
 
 def checked(exercise: Exercise, given: Given) -> dict[str, tuple[str, Fraction | None]]:
-    """What `check` says of an answer: verdict and credit of each part."""
+    """What `check` says of an answer: verdict and credit of each part; a platform leaves no marks open for a reader."""
     answer: dict[str, dict[str, Any]] = {}
     for part in exercise.parts:
         if part.name in given:
@@ -122,4 +122,9 @@ def checked(exercise: Exercise, given: Given) -> dict[str, tuple[str, Fraction |
             answer.setdefault(part.part.partition(".")[0], {})[part.letter] = rows[0][0] if is_text else rows
     report = exercise.checked.report(answer)
     names = {part.part: part.name for part in exercise.parts}
-    return {names[part.part]: (part.verdict, part.credit) for part in report.parts if part.part in names}
+    open_marks = {"unreadable": Fraction(0)}
+    return {
+        names[part.part]: (part.verdict, open_marks.get(part.verdict, part.credit))
+        for part in report.parts
+        if part.part in names
+    }

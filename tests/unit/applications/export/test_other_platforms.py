@@ -219,8 +219,10 @@ def test_a_notebook_gives_the_marks_of_check() -> None:
     assert graded_cell(each, {**ours, "F": F})[0] == 3
     assert graded_cell(each, {**ours, "F": f"-({F})"})[0] == 2.5
     assert graded_cell(each, {"K": ours["K"], "L": [[1], [2]]})[0] == 1
-    marks, printed = graded_cell(each, {"K": "[1 (", "F": F})
-    assert (marks, "missing: L" in printed, "unreadable" in printed) == (1, True, True)
+    marks, printed = graded_cell(each, {"F": F})
+    assert (marks, "missing: K, L" in printed) == (1, True)
+    with pytest.raises(RuntimeError, match="marked by hand"):
+        graded_cell(each, {"K": "[1 (", "F": F})
     assert graded_cell(each, {})[0] == 0
 
 
