@@ -11,6 +11,8 @@ from typing import Any
 #: Where tasks and methods are discovered, and where output formats are.
 TASK_PACKAGES = ("symobs.tasks.analysis", "symobs.tasks.design")
 FORMAT_PACKAGE = "symobs.pages.formats"
+#: Where the pictures of results are drawn.
+PICTURES = "symobs.pages.drawings.plot_file"
 #: Functions that are no tasks, and where they are.
 FUNCTIONS = {
     "bounded": "symobs.cli.shared.time_and_memory",

@@ -143,7 +143,7 @@ def signature(task: Task) -> str:
     if task.name in symobs.FUNCTIONS:  # it takes a design as well
         kinds = ("state_feedback", "observer", "compensator", "lqr", "kalman")
         designs = " | ".join(own_class(tasks()[name]) for name in kinds)
-        told = f"@overload\ndef {task.name}(design: {designs}) -> Mapping[str, Any]: ...\n"
+        told = f"@overload\ndef {task.name}(design: {designs}) -> {own}: ...\n"
         return told + f"@overload\ndef {task.name}(\n    {plant},\n{star}" + "\n".join(keywords) + f"\n) -> {own}: ..."
     return f"def {task.name}(\n    {plant},\n{star}" + "\n".join(keywords) + f"\n) -> {own}:\n{told}"
 

@@ -7,7 +7,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.ground.errors import DerivationRejected, UsageError
+from symobs.ground.errors import UsageError
 from symobs.pages.drawings.plot_layout import plot_scene
 from symobs.pages.drawings.scene import FONT_SIZE, NARROWEST, RADIUS, STYLES, arrow_head, caption_below, head_of
 from symobs.pages.drawings.svg import svg_file
@@ -21,9 +21,12 @@ from symobs.tasks.result import Document
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from matplotlib.figure import Figure
+
     from symobs.formula.figures import Drawn, Picture, SweepCurves, SweepMap
+    from symobs.formula.phrases.languages import Language
     from symobs.formula.tree import Formula, Relation
-    from symobs.pages.drawings.scene import Content, Point, Scene, Sign, Stroke
+    from symobs.pages.drawings.scene import Content, Point, Rectangle, Scene, Sign, Stroke
     from symobs.proof.derivation import Step
     from symobs.tasks.result import Result
 
@@ -55,13 +58,32 @@ def require_matplotlib() -> None:
         raise UsageError(message, repair="pip install matplotlib, or name a file that ends in .svg or .tex") from None
 
 
-def drawn_by_matplotlib(picture: Drawn, kind: str, latex: LatexPrinter, text: TextPrinter) -> bytes:
-    """Return a plot with its caption as `png` or `pdf`."""
+def drawn_by_matplotlib(pictures: Sequence[Drawn], latex: LatexPrinter, text: TextPrinter) -> Figure:
+    """Return plots with their captions below each other in one figure of matplotlib."""
     require_matplotlib()
     from matplotlib.figure import Figure
 
     write = _writer(latex, text)
-    scene = plot_scene(picture, lambda content: _size(write(content)), latex.language)
+    laid_out = [_laid_out(picture, write, latex.language) for picture in pictures]
+    sizes = [(whole.right - whole.left, whole.top - whole.bottom) for _, whole, _ in laid_out]
+    width, height = max(size[0] for size in sizes), sum(size[1] for size in sizes)
+    figure, above = Figure(figsize=(width / 72, height / 72), facecolor="white"), height
+    for (scene, whole, rows), (own_width, own_height) in zip(laid_out, sizes, strict=True):
+        above -= own_height
+        axes = figure.add_axes((0, above / height, own_width / width, own_height / height))
+        axes.set(xlim=(whole.left, whole.right), ylim=(whole.bottom, whole.top))
+        axes.axis("off")
+        _draw(scene, axes, write)
+        for place, row in rows:
+            axes.text(*place, _joined(row), fontsize=FONT_SIZE, va="center", **_FONT)
+    return figure
+
+
+def _laid_out(
+    picture: Drawn, write: Callable[[Content], str], language: Language
+) -> tuple[Scene, Rectangle, Sequence[tuple[Point, list[list[str]]]]]:
+    """Return the scene of a plot, its size with the caption, and the rows of the caption."""
+    scene = plot_scene(picture, lambda content: _size(write(content)), language)
     widest = max(scene.whole.right - scene.whole.left, NARROWEST) / 2
 
     def mathematics(content: Formula | Relation) -> list[str]:
@@ -69,19 +91,8 @@ def drawn_by_matplotlib(picture: Drawn, kind: str, latex: LatexPrinter, text: Te
         piece = write(content)
         return [piece] if _size(piece)[0] <= widest else _broken(piece)
 
-    whole, rows = caption_below(
-        picture, scene, latex.language, _escaped, mathematics, lambda piece: _size(piece)[0], _SPACE
-    )
-    figure = Figure(figsize=((whole.right - whole.left) / 72, (whole.top - whole.bottom) / 72), facecolor="white")
-    axes = figure.add_axes((0, 0, 1, 1))
-    axes.set(xlim=(whole.left, whole.right), ylim=(whole.bottom, whole.top))
-    axes.axis("off")
-    _draw(scene, axes, write)
-    for place, row in rows:
-        axes.text(*place, _joined(row), fontsize=FONT_SIZE, va="center", **_FONT)
-    buffer = BytesIO()
-    figure.savefig(buffer, format=kind, dpi=_RESOLUTION, metadata=_METADATA[kind])
-    return buffer.getvalue()
+    whole, rows = caption_below(picture, scene, language, _escaped, mathematics, lambda piece: _size(piece)[0], _SPACE)
+    return scene, whole, rows
 
 
 def _escaped(text: str) -> str:
@@ -207,15 +218,25 @@ def check_target(path: str) -> None:
 def picture_file(results: Sequence[Result], path: str, language: str = "en") -> bytes:
     """Return the plot of the first result with one, in the format of the suffix of `path`, its caption in a language."""
     check_target(path)
-    result = next((result for result in results if result.picture is not None), None)
-    if result is None or result.picture is None:
+    shown = ((result, picture) for result in results for picture in pictures_of(result))
+    result, picture = next(shown, (None, None))
+    if result is None or picture is None:
         message = f"there is no picture of {', '.join(result.task for result in results)}"
         raise UsageError(
             message, where="--plot", repair="leave --plot out, or ask for a task whose page shows a picture"
         )
-    _require_checked(result.picture, result)
     document = Document("", "", (result,), language=language)
-    return _written(result.picture, document, Path(path).suffix.lower())
+    return _written(picture, document, Path(path).suffix.lower())
+
+
+def figure(result: Result) -> Figure:
+    """Return the pictures of a result's page as a figure of matplotlib; raises `UsageError` where it has none."""
+    pictures = pictures_of(result)
+    if not pictures:
+        repair = "ask for a task whose page shows a picture, such as response, stability_region or margins"
+        raise UsageError(f"there is no picture of {result.task}", where="plot", repair=repair)
+    document = Document("", "", (result,))
+    return drawn_by_matplotlib(pictures, printer_for(document, LatexPrinter), printer_for(document, TextPrinter))
 
 
 def sweep_file(picture: SweepCurves | SweepMap, path: str) -> bytes:
@@ -231,19 +252,21 @@ def _written(picture: Drawn, document: Document, suffix: str) -> bytes:
         case ".tex":
             return tikz_file(picture, latex).encode()
         case _:
-            return drawn_by_matplotlib(picture, _BY_MATPLOTLIB[suffix], latex, text)
-
-
-def _require_checked(picture: Picture, result: Result) -> None:
-    """Raise `DerivationRejected` unless the plot is one of the result's checked page."""
-    if not is_shown(picture, result):
-        raise DerivationRejected("the page shows another picture")
+            kind, buffer = _BY_MATPLOTLIB[suffix], BytesIO()
+            drawn = drawn_by_matplotlib([picture], latex, text)
+            drawn.savefig(buffer, format=kind, dpi=_RESOLUTION, metadata=_METADATA[kind])
+            return buffer.getvalue()
 
 
 def is_shown(picture: Picture, result: Result) -> bool:
-    """Return whether a plot is one of the result's page, which is checked."""
+    """Return whether a plot is one of the result's page."""
+    return picture in pictures_of(result)
+
+
+def pictures_of(result: Result) -> list[Picture]:
+    """Return the plots of a result's page, which is checked; raises `DerivationRejected`."""
     result.derivation.check()
-    return picture in set(_shown(result.derivation.steps))
+    return list(dict.fromkeys(_shown(result.derivation.steps)))
 
 
 def _shown(steps: Sequence[Step]) -> Iterator[Picture]:

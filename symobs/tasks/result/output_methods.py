@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cached_property
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, Self, TypedDict
 
+import symobs
 from symobs.exact import Complex, Factored, Matrix, Root, Scalar, Shifted
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.exact.core.generators import PI, symbols_named
@@ -21,6 +23,8 @@ from symobs.system.reading import has_decimals
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping
+
+    from matplotlib.figure import Figure
 
     from symobs.system import StateSpace
 
@@ -127,6 +131,8 @@ def _all(values: list[Any]) -> list[Any] | None:
 
 #: Answers of more terms than this are not written out by `repr`.
 _TERMS_SHOWN = 500
+#: So many characters of an answer are written out by it.
+_SHOWN = 200
 
 
 class OutputMethods:
@@ -152,6 +158,14 @@ class OutputMethods:
     def to_markdown(self, *, language: str = "en") -> str:
         """Return the derivation as Markdown."""
         return str(self.to("markdown", language=language))
+
+    def plot(self) -> Figure:
+        """Return the pictures of the page as a figure of matplotlib, below each other; a notebook shows it.
+
+        Raises `UsageError` for a result without pictures, and where matplotlib is missing.
+        """
+        found: Figure = import_module(symobs.PICTURES).figure(self)
+        return found
 
     def to_json(self) -> str:
         """Return the result as JSON."""
@@ -248,15 +262,25 @@ class OutputMethods:
         return sorted({*own, *self.fields})
 
     def __repr__(self) -> str:
-        """Show the answers in short; of one with many terms their number, for a display may not take seconds."""
-        parts = {name: value for name, value in self.answer.items() if value is not None}
-        for name in self.answered_by if self.numbers is not self.fields else ():  # the digits themselves
-            parts[name] = "[" + "; ".join(" ".join(row) for row in self.decimals[name]) + "]"
-            parts.pop("digits", None)
-        long = {name: size for name, value in parts.items() if (size := getattr(value, "size", 0)) > _TERMS_SHOWN}
-        shown = [f"{name}=<{long[name]} terms>" if name in long else f"{name}={value}" for name, value in parts.items()]
-        verdict = "" if long else f", verdict={self.verdict!r}"
-        return f"{type(self).__name__}({', '.join(shown)[:200]}{verdict})"
+        """Show what answers the task; of what has many terms their number, for a display may not take seconds."""
+        found = {name: self.fields[name] for name in self.answered_by if self.fields.get(name) is not None}
+        if self.numbers is not self.fields:  # their digits, where they have no closed form
+            rows = {
+                name: self.decimals[name] for name in self.answered_by if name not in found and name in self.decimals
+            }
+            found |= {name: f"[{'; '.join(' '.join(row) for row in value)}]" for name, value in rows.items()}
+        long = {name: size for name, value in found.items() if (size := getattr(value, "size", 0)) > _TERMS_SHOWN}
+        shown = [f"{name}={_in_short(value, long.get(name, 0))}" for name, value in found.items()]
+        verdict = [] if long else [f"verdict={self.verdict!r}"]
+        return f"{self.task}({', '.join(shown + verdict)})"
+
+
+def _in_short(value: Any, terms: int) -> str:
+    """Return a value on one line, cut where it is long; of one with many terms their number."""
+    if terms:
+        return f"<{terms} terms>"
+    text = str(to_json(value)) if isinstance(value, (list, tuple, dict)) else str(value)
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}…"
 
 
 # Number format of a page: exact, or with a number of significant digits.

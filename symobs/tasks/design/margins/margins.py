@@ -179,6 +179,24 @@ class Margins(Result):
             return public(self.answer[name])
         return super().__getattr__(name)
 
+    def keys(self) -> tuple[str, ...]:
+        """The names of the margins, by which they are looked up, too: `found["gain_up"]`, `dict(found)`."""
+        return MARGINS
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names of the margins."""
+        return iter(MARGINS)
+
+    def __getitem__(self, name: str) -> Any:
+        """Return a margin by its name."""
+        if name not in MARGINS:
+            raise KeyError(name)
+        return getattr(self, name)
+
+    def items(self) -> tuple[tuple[str, Any], ...]:
+        """Return the margins with their names."""
+        return tuple((name, self[name]) for name in MARGINS)
+
     @cached_property
     def region(self) -> StabilityRegion | None:
         """Where P + kN is stable as k moves; None where k does not stand in it."""

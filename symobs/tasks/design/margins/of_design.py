@@ -1,24 +1,21 @@
-"""Margins of a design as a mapping, or the task `margins`, as Python calls both."""
+"""Margins of a design, or the task `margins`, as Python calls both."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from symobs.ground.errors import InputError
-from symobs.tasks.design.margins.margins import MARGINS, Margins, has_loop, in_digits, loop_of, public
+from symobs.tasks.design.margins.margins import Margins, has_loop, in_digits, loop_of
 from symobs.tasks.design.margins.margins import margins as margins_task
 from symobs.tasks.result import Result
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
-
-def margins(design: Any, **asked: Any) -> Mapping[str, Any] | Result:
+def margins(design: Any, **asked: Any) -> Result:
     """Return how far a loop is from instability: of a state feedback, an observer, a compensator, `lqr` or `kalman`.
 
     The loop is K(sI − A)⁻¹B, C(sI − A)⁻¹L, or F(s)G(s) cut at the input of the plant; it has one input and one output,
     numbers, of which irrational ones are rounded to 15 digits, and a stable closed loop.
-    Returns by name: gain_down and gain_up, the ends of the interval around 1 of gains that keep the loop stable;
+    Returns gain_down and gain_up, the ends of the interval around 1 of gains that keep the loop stable;
     phase_deg, the smallest angle in degrees, either way, that does not;
     modulus, the smallest distance from −1 on the boundary of stability; peak, the largest value of |1/(1 + loop)| there;
     slowest, the largest real part (in discrete time modulus) of the poles.  Ends and slowest are exact, oo where there is
@@ -36,7 +33,7 @@ def margins(design: Any, **asked: Any) -> Mapping[str, Any] | Result:
     if found.answer["modulus"] is None:
         message = "the closed loop is not stable, so it has no margins"
         raise InputError(message, where="design", repair="place the poles where they are stable")
-    return {name: public(found.answer[name]) for name in MARGINS}
+    return found
 
 
 margins.kinds = margins_task.kinds  # type: ignore[attr-defined]  # asked anew at values, as every task
