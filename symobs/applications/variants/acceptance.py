@@ -37,7 +37,7 @@ from symobs.formula.expression import parse_matrix, parse_polynomial, parse_scal
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import CertificateRejected, InputError, SymobsError
 from symobs.pages.formats.json import answer_object
-from symobs.problem.expect import mismatches
+from symobs.problem.expect import found_in, mismatches
 from symobs.problem.schema import kinds_of
 from symobs.tasks.result import task_named
 from symobs.tasks.result.output_methods import to_json
@@ -477,7 +477,7 @@ def expected(problem: Problem, results: Sequence[Result]) -> dict[str, Any]:
 
 
 def _value_of(view: ResultInConvention, name: str) -> Any:
-    return view.verdict if name == "verdict" else _written(view.fields[name])
+    return _written(found_in(view, name))
 
 
 def _written(value: Any) -> Any:
