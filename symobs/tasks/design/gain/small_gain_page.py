@@ -11,7 +11,8 @@ from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.tasks.design.gain.gain_kind import SmallGain
 from symobs.tasks.design.pole_placement.brunovsky_chains import cost
-from symobs.tasks.design.pole_placement.multiple_outputs import MultiOutputPair, why_simple
+from symobs.tasks.design.pole_placement.choice import why_simple
+from symobs.tasks.design.pole_placement.multiple_outputs import MultiOutputPair
 from symobs.tasks.design.pole_placement.single_output import ObserverPair
 
 if TYPE_CHECKING:

@@ -128,3 +128,12 @@ def test_one_input_has_one_gain_whatever_is_chosen() -> None:
 def test_what_cannot_be_chosen_is_refused(asked: dict[str, str], message: str) -> None:
     with pytest.raises(InputError, match=message):
         symobs.state_feedback(CHAINS, **asked)
+
+
+def test_nothing_is_chosen_where_every_gain_is_given() -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
+    with pytest.raises(InputError, match="both K and choose are given"):
+        symobs.feedforward(plant, K="[1 1]", choose="small")
+    with pytest.raises(InputError, match="both K and choose are given"):
+        symobs.compensator(plant, K="[1 1]", L="[1; 1]", choose="small")
+    assert list(symobs.compensator(plant, K="[1 1]", observer_poles="-1, -2", choose="small").L) == [3, 2]
