@@ -292,6 +292,8 @@ def observer_based(
     choose: str = "auto",
 ) -> OutputFeedback:
     """Return the compensator for the poles, polynomial or gain of each loop."""
+    if gains[1] is not None:
+        reject_both("K", gains[0], None if choose == "auto" else choose, None, other="choose")
     plant = plant.knowing(*control, *estimate, *gains)
     plant.require("B", "C", task=task)
 
@@ -340,6 +342,7 @@ def of_known_state(
     asked: Asked | None
     if gain is not None:
         reject_both("K", gain, *control, other="control_poles")
+        reject_both("K", gain, None if choose == "auto" else choose, None, other="choose")
         asked = read_gain(gain, plant, "K", (plant.inputs, plant.order))
     else:
         asked = desired_polynomial(plant, *control, names=("control_poles", "control_polynomial"), choose=choose)

@@ -39,12 +39,12 @@ from symobs.tasks.design.gain.gain_kind import (
     SmallGain,
     UnassignableGain,
 )
+from symobs.tasks.design.pole_placement.choice import small_gain
 from symobs.tasks.design.pole_placement.multiple_outputs import (
     Family,
     MultiOutputPair,
     decoupled_claim,
     decoupled_gain,
-    small_gain,
 )
 from symobs.tasks.design.pole_placement.sylvester import fresh_names
 from symobs.tasks.design.pole_placement.zero_pattern import RootGain, equations_for, obstacles, unknown_gain, with_zeros

@@ -21,7 +21,7 @@ from symobs.tasks.analysis.page_parts import (
 from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_design import GainDesign
 from symobs.tasks.design.gain.gain_kind import AlgebraicGain, SmallGain
-from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
+from symobs.tasks.design.gain.small_gain_page import compare_with_simple, say_why_simple, small_gain_terms
 from symobs.tasks.design.named_gains import define_gain, entry_letters, gain_letters
 from symobs.tasks.design.pole_placement.sylvester import Sylvester, charts_of
 
@@ -158,6 +158,7 @@ def write_hidden_family(page: Builder, design: GainDesign, side: PlacementProble
     """Write one gain and the dimension of the family where some modes are fixed."""
     assert design.chart is not None  # noqa: S101 - several outputs have a chart wherever there is a gain
     key = of_the_others(design)
+    say_why_simple(page, design, side, _pair(page, side)[1])
     define_gain(page, side.gain, design.answer[side.gain], say=f"{key}_{side.kind}")
     if key == "one_gain":
         outputs, hidden = design.dual_pair(page.plant).c.shape[0], design.pair.kernel.shape[1]

@@ -11,7 +11,8 @@ from symobs.formula.tree.term import Term, block
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.tasks.design.gain.gain_kind import SmallGain
 from symobs.tasks.design.pole_placement.brunovsky_chains import cost
-from symobs.tasks.design.pole_placement.multiple_outputs import why_simple
+from symobs.tasks.design.pole_placement.choice import why_simple
+from symobs.tasks.design.pole_placement.multiple_outputs import MultiOutputPair
 from symobs.tasks.design.pole_placement.single_output import ObserverPair
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def small_gain_terms(
     A and `moved` are the terms of A and of B or C for which the design is one.  Nothing is written or returned where the
     gain was not searched for, or has become another one.
     """
-    _say_why_simple(page, design, side, moved)
+    say_why_simple(page, design, side, moved)
     if not isinstance(design.kind, SmallGain):
         return [], ""
     L, vectors = design.transpose_for_task(design.answer[design.letter]), design.kind.vectors
@@ -53,7 +54,9 @@ def _by_eigenvectors(
         page.set(f"Psi_{side.index}", Psi),
     )
     A, driven = (A.T, moved.T) if side.is_dual else (A, moved)
-    page.equal(relation(left, Psi), relation(A @ left - driven @ right, left @ page.value(J)), say="small_solved")
+    page.equal(
+        relation(left, Psi), relation(A @ left - driven @ right, left @ page.value(J)), say=f"small_solved_{side.kind}"
+    )
     gain = right @ left.inverse
     return [gain.T if side.is_dual else gain]
 
@@ -102,14 +105,19 @@ def _left(design: GainDesign, L: Matrix) -> tuple[int, Matrix] | None:
     return None
 
 
-def _say_why_simple(page: Builder, design: GainDesign, side: PlacementProblem, moved: Term) -> None:
+def say_why_simple(page: Builder, design: GainDesign, side: PlacementProblem, moved: Term) -> None:
     """Say why the gain is not one with small entries, although that is wanted."""
     desired = design.desired
     if desired is None or desired.choose != "small" or isinstance(design.kind, SmallGain):
         return
     why = why_simple(design.pair, desired)
-    if why == "letters":
-        page.remark("small_not_letters")
+    if why in {"letters", "hidden"}:
+        page.remark(f"small_not_{why}")
+    elif not why and isinstance(design.pair, MultiOutputPair):
+        from symobs.tasks.design.pole_placement.small_gain import is_small  # noqa: PLC0415 - as in the search
+
+        if not is_small(design.pair, desired, design.transpose_for_task(design.answer[side.gain])):
+            page.remark("small_not_found")
     elif why == "repeated":
         factor, power = max(factored(desired.polynomial, desired.variable).factors, key=lambda part: part[1])
         eigenvectors = relation(moved.apply("rank"), rank(moved.value))

@@ -13,11 +13,11 @@ from __future__ import annotations
 from fractions import Fraction
 from itertools import islice
 from math import floor, log10
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from symobs.exact import Matrix, Scalar, factored, rank, reduced_echelon
+from symobs.exact import Matrix, Scalar, factored, reduced_echelon
 from symobs.tasks.design.pole_placement.brunovsky_chains import cost
 from symobs.tasks.design.pole_placement.conditioned_placement import best_conditioned, condition_of
 from symobs.tasks.design.pole_placement.row_reduction import block_of, null_matrix, null_vector
@@ -40,6 +40,8 @@ NEAR, KEPT = 1.4, 4
 #: For every step to which entries are rounded so many roundings are tried for each output, and so many of them exactly; then
 #: the steps that have to serve, and all that are tried.
 ROUNDINGS, EXACT, SERVING, STEPS = 100, 20, 3, 24
+#: Where the condition of a matrix is greater its inverse in floating point says nothing.
+SOLVABLE = 1e13
 #: The golden ratio, whose multiples modulo 1 are spread evenly.
 GOLDEN = (1 + 5**0.5) / 2
 
@@ -92,6 +94,12 @@ def poles_of(desired: DesiredPolynomial) -> list[complex]:
         coefficients = [float(c.fraction()) for c in factor.coefficients(desired.variable)]
         found += [complex(root) for root in np.roots(coefficients)] * power
     return found
+
+
+def is_small(pair: MultiOutputPair, desired: DesiredPolynomial, L: Matrix) -> bool:
+    """Return whether a gain of a pair with numbers is small, and its eigenvectors not much worse conditioned than the best."""
+    target = Target.of(pair, desired)
+    return target is not None and target.admits(in_floats(L), KEPT)
 
 
 def small_gain(pair: MultiOutputPair, desired: DesiredPolynomial, simple: Matrix, *, asked: bool) -> Small | None:
@@ -159,7 +167,7 @@ def _promising(target: Target, output: int, step: Fraction, condition: float) ->
     for _ in range(order - 1):
         rows.append(rows[-1] @ closed)
     observability = np.concatenate(rows, axis=1)
-    regular = np.linalg.det(observability) != 0
+    regular = np.linalg.cond(observability) < SOLVABLE
     numbers, gains, closed, observability = (stack[regular] for stack in (numbers, gains, closed, observability))
     last = np.linalg.solve(observability, np.eye(order)[:, -1:])
     column = np.zeros_like(last)
@@ -172,10 +180,10 @@ def _promising(target: Target, output: int, step: Fraction, condition: float) ->
 
 
 class _Block(NamedTuple):
-    """The null vectors that belong to a factor of φ: J, a basis, and the weights of the best placement in it."""
+    """The null vectors that belong to a factor of φ: J, a basis as columns, and the weights of the best placement in it."""
 
     J: Matrix
-    basis: list[Matrix]
+    basis: Matrix
     weights: Reals
 
 
@@ -184,11 +192,18 @@ def _by_eigenvectors(
 ) -> Iterator[Small]:
     """Yield small gains with eigenvectors whose free components are rounded to the first few steps that serve."""
     serving, blocks = 0, list(_blocks(pair, desired, target.best))
+    bases = [in_floats(block.basis) for block in blocks]
+    ends = np.cumsum([basis.shape[1] for basis in bases])
     for step in islice(_steps(1.0), STEPS):
         found = False
         for number in range(EXACT):
-            up = (np.arange(1, 1 + sum(len(block.basis) for block in blocks)) * GOLDEN * number + 0.5) % 1
-            small = _with_vectors(blocks, step, up)
+            up = np.split((np.arange(1, 1 + ends[-1]) * GOLDEN * number + 0.5) % 1, ends[:-1])
+            numbers = [np.floor(block.weights / float(step) + u) for block, u in zip(blocks, up, strict=True)]
+            near = [basis @ n for basis, n in zip(bases, numbers, strict=True)]
+            Psi, f = (np.array(rows).T for rows in _split(near, blocks))
+            if np.linalg.cond(Psi) > SOLVABLE or not target.admits(np.linalg.solve(Psi.T, f.T), condition):
+                continue
+            small = _with_vectors(blocks, [[step * int(n) for n in each] for each in numbers])
             if small is not None and target.admits(in_floats(small.gain), condition):
                 found = True
                 yield small
@@ -201,14 +216,14 @@ def _blocks(pair: MultiOutputPair, desired: DesiredPolynomial, best: Placement) 
     """Yield the blocks, one for each factor of φ as often as it is one."""
     left = list(range(len(best.poles)))
     for factor, power in factored(desired.polynomial, desired.variable).factors:
-        J = block_of(factor, desired)
+        J = _of_numbers(block_of(factor, desired))
         matrix = null_matrix(pair, J)
         pivots, reduced = reduced_echelon(matrix)
         free = [column for column in range(matrix.shape[1]) if column not in pivots]
-        basis = [null_vector(column, pivots, reduced) for column in free]
+        basis = Matrix.block([[null_vector(column, pivots, reduced) for column in free]])
         values, W = np.linalg.eig(in_floats(J))
         for _ in range(power):
-            own = []
+            own: list[int] = []
             for value in values:
                 own.append(min(left, key=lambda k: abs(best.poles[k] - value)))
                 left.remove(own[-1])
@@ -217,21 +232,29 @@ def _blocks(pair: MultiOutputPair, desired: DesiredPolynomial, best: Placement) 
             yield _Block(J, basis, weights / weights[np.argmax(np.abs(weights))])
 
 
-def _with_vectors(blocks: Sequence[_Block], step: Fraction, up: Reals) -> Small | None:
-    """Return the gain for free components rounded to steps, None where the eigenvectors are dependent."""
-    psi, f, start, order = [], [], 0, sum(block.J.shape[0] for block in blocks)
-    for block in blocks:
-        numbers = np.floor(block.weights / float(step) + up[start : start + len(block.basis)])
-        start += len(block.basis)
-        parts = [b * (step * int(number)) for b, number in zip(block.basis, numbers, strict=True)]
-        vector, size = sum(parts[1:], start=parts[0]).normal().entries, block.J.shape[0]
-        psi += [vector[k * order : (k + 1) * order] for k in range(size)]
+def _of_numbers(matrix: Matrix) -> Matrix:
+    """Return a matrix of rational numbers over their own field."""
+    return Matrix.of([[entry.fraction() for entry in row] for row in matrix.rows])
+
+
+def _split(vectors: Sequence[Any], blocks: Sequence[_Block]) -> tuple[list[Any], list[Any]]:
+    """Return the columns of Ψ and of f, which are stacked in the vector of each block."""
+    psi, f, order = [], [], sum(block.J.shape[0] for block in blocks)
+    for vector, block in zip(vectors, blocks, strict=True):
+        size = block.J.shape[0]
         outputs = len(vector) // size - order
+        psi += [vector[k * order : (k + 1) * order] for k in range(size)]
         f += [vector[order * size + k * outputs : order * size + (k + 1) * outputs] for k in range(size)]
-    Psi, F = Matrix.of(psi).T, Matrix.of(f).T
-    if rank(Psi) < Psi.shape[0]:
+    return psi, f
+
+
+def _with_vectors(blocks: Sequence[_Block], weights: Sequence[Sequence[Fraction]]) -> Small | None:
+    """Return the gain for free components, None where the eigenvectors are dependent."""
+    vectors = [(block.basis @ Matrix.column(own)).entries for block, own in zip(blocks, weights, strict=True)]
+    Psi, f = (Matrix.of(columns).T for columns in _split(vectors, blocks))
+    if Psi.determinant().is_zero:
         return None
-    return Small(Psi.T.solve(F.T).normal(), (Psi, F, block_diagonal([block.J for block in blocks])))
+    return Small(Psi.T.solve(f.T).normal(), (Psi, f, block_diagonal([block.J for block in blocks])))
 
 
 def block_diagonal(blocks: Sequence[Matrix]) -> Matrix:

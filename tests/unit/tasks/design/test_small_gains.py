@@ -82,7 +82,7 @@ def test_a_repeated_pole_has_as_many_eigenvectors_as_inputs() -> None:
     assert places(closed, "(s + 2)**2*(s**2 + 6*s + 10)")
     assert (closed + 2 * sympy.eye(4)).rank() == 2
     assert largest(found.K) <= 1.5 * best(A, B, [-2, -2, -3 + 1j, -3 - 1j])
-    assert "where these columns solve an equation" in text_of(found)
+    assert "a solution of the following equation" in text_of(found)
 
 
 def test_the_family_of_a_plant_with_numbers_is_not_written_out_in_thousands_of_terms() -> None:
@@ -113,6 +113,12 @@ def test_a_pole_that_has_too_few_eigenvectors_keeps_the_simple_gain_and_says_why
     assert "desired more often" not in text_of(symobs.state_feedback(CHAINS, poles="-2, -2, -2"))
 
 
+def test_beside_a_fixed_mode_the_simple_gain_stays_and_the_page_says_why() -> None:
+    plant = symobs.StateSpace("[0 1 0 0; 0 0 0 0; 0 0 0 0; 0 0 0 -3]", "[0 0; 1 0; 0 1; 0 0]")
+    found = symobs.state_feedback(plant, poles="-1, -2, -3, -4", choose="small")
+    assert "Small entries are chosen where no mode is fixed" in text_of(found)
+
+
 def test_one_input_has_one_gain_whatever_is_chosen() -> None:
     plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]")
     assert list(symobs.state_feedback(plant, poles="-1, -2", choose="small").K) == [2, 3]
@@ -122,3 +128,12 @@ def test_one_input_has_one_gain_whatever_is_chosen() -> None:
 def test_what_cannot_be_chosen_is_refused(asked: dict[str, str], message: str) -> None:
     with pytest.raises(InputError, match=message):
         symobs.state_feedback(CHAINS, **asked)
+
+
+def test_nothing_is_chosen_where_every_gain_is_given() -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]")
+    with pytest.raises(InputError, match="both K and choose are given"):
+        symobs.feedforward(plant, K="[1 1]", choose="small")
+    with pytest.raises(InputError, match="both K and choose are given"):
+        symobs.compensator(plant, K="[1 1]", L="[1; 1]", choose="small")
+    assert list(symobs.compensator(plant, K="[1 1]", observer_poles="-1, -2", choose="small").L) == [3, 2]
