@@ -62,6 +62,11 @@ class Inequality(NamedTuple):
         return sign > 0 if self.operator == ">" else sign >= 0 if self.operator == ">=" else sign != 0
 
 
+#: What says that nothing is stable, and that everything is, as people answer whether it is.
+_NEVER = re.compile(r"false|no|nein|never|nie|(not|nicht) (stable|stabil)|unstable|instabil", re.IGNORECASE)
+_ALWAYS = re.compile(r"true|yes|ja|always|immer|((always|immer) )?(stable|stabil)", re.IGNORECASE)
+
+
 def read_conditions(given: Any, names: Any, where: str = "stable_if") -> Union:
     """Return the conditions of a text, of a list (all of them hold) or of a list of lists (one of them holds).
 
@@ -109,9 +114,9 @@ def _conjunction(parts: Sequence[Any], names: Any, where: str) -> tuple[Inequali
         if len(together) > 1:
             raise InputError('a list with "or" has two readings', where=where, repair="write a list of lists")
         for text in together[0]:
-            if text == "False":
+            if _NEVER.fullmatch(text):
                 return None
-            if text not in {"", "True"}:
+            if text and not _ALWAYS.fullmatch(text):
                 found += _chain(text, names, where)
     return tuple(found)
 

@@ -83,3 +83,9 @@ def test_tracking_does_not_depend_on_a_wrong_gain() -> None:
         assert (parts["K_d"].verdict, parts["K"].verdict, parts["L"].slip) == (verdict, "wrong", "sign")
     given = {"K": "[5 3]", "error_matrix": "[0 1 0; -5 -4 -3; 0 0 -10]"}
     assert {part.letter: part.verdict for part in problem.report(given).parts}["error_matrix"] == "follows"
+
+
+@tabled
+def test_whether_a_polynomial_is_stable_is_answered_by_a_word(polynomial: str, given: str, verdict: str) -> None:
+    problem = f'task = "stability_region"\n[specification]\npolynomial = "{polynomial}"\nparameters = []\n'
+    assert verdicts(problem, {"stable_if": given}) == {"stable_if": verdict}
