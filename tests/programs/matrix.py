@@ -254,19 +254,19 @@ def exported(sample: Sample) -> str:
 def variants(sample: Sample) -> str:
     """A number of the plant or of the specification varies."""
     why = "no number to vary"
-    for where, key in [(w, key) for w in ("plant", "specification") for key in sample.data.get(w, {})]:
-        text = str(sample.data[where][key])
-        for found in re.finditer(r"(?<![\w.^/])\d+(?![\w.])", text):
-            changed = {**sample.data[where], key: f"{text[: found.start()]}v{text[found.end() :]}"}
-            varied = {"parameters": {"v": {"set": [str(number) for number in range(1, 10)]}}}
-            try:
-                made = list(
-                    symobs.variants(toml_text({**sample.data, where: changed, "variants": varied}), 2, workers=1)
-                )
-                if made[0] != made[1]:
-                    return ""
-            except SymobsError as error:
-                why = str(error)
+    for table in ("plant", "specification"):
+        for key, value in sample.data.get(table, {}).items():
+            for found in _numbers(text := json.dumps(value)):
+                changed = {**sample.data[table], key: json.loads(f"{text[: found.start()]}v{text[found.end() :]}")}
+                varied = {"parameters": {"v": {"set": [str(number) for number in range(1, 10)]}}}
+                try:
+                    made = list(
+                        symobs.variants(toml_text({**sample.data, table: changed, "variants": varied}), 2, workers=1)
+                    )
+                except SymobsError as error:
+                    why = str(error)
+                    continue
+                return "" if made[0] != made[1] else "two that are one"
     return why
 
 
@@ -300,11 +300,16 @@ def _letters(sample: Sample) -> dict[str, int]:
     return dict(zip(dict.fromkeys(own), range(2, 100), strict=False))
 
 
+def _numbers(text: str) -> Iterator[re.Match[str]]:
+    """Yield the whole numbers of a text of JSON in whose place a letter may stand: in a text, or alone in quotes."""
+    yield from re.finditer(r'(?<![\w.^/*"-])[1-9]\d*(?![\w.*/"])|(?<=")[1-9]\d*(?=")', text)
+
+
 def _with_a_letter(sample: Sample) -> tuple[dict[str, Any], int] | None:
     """Return the problem with the letter v for a number of its matrices, and that number."""
     for key in sample.data.get("plant", {}).keys() & {"A", "B", "C"}:
         text = json.dumps(sample.data["plant"][key])
-        for found in re.finditer(r'(?<![\w.^/*"-])[1-9]\d*(?![\w.*/"])|(?<=")[1-9](?=")', text):
+        for found in _numbers(text):
             changed = json.loads(f"{text[: found.start()]}v{text[found.end() :]}")
             symbols = {**sample.data.get("symbols", {}), "v": "positive"}
             return {**sample.data, "plant": {**sample.data["plant"], key: changed}, "symbols": symbols}, int(found[0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field
 from fractions import Fraction
@@ -19,7 +19,9 @@ from symobs.applications.checking.handwriting import (
     without_drawings,
     without_latex,
     without_marks,
+    without_words,
 )
+from symobs.applications.checking.wording import PROPERTIES, Said, in_inequalities, verdict_of, what_is_said
 from symobs.exact import Factored, Matrix, Scalar
 from symobs.formula.expression import declared_name, parse_matrix, parse_scalar
 from symobs.formula.expression.parse import ROW, ROWS
@@ -35,7 +37,7 @@ from symobs.problem.expect import factored_table
 _NAME = r"[ \t]*([A-Za-z\u0391-\u03c9][A-Za-z0-9_.\u2080-\u2089]*)((?:[ \t]*\([szt]\))?)[ \t]*(?::=|==?|≈)(?![=<>])"
 #: What gives a letter its value, or a function of s, z or t: F(s) = 1/s.
 _DEFINITION = re.compile(rf"{_NAME}(.*)", re.DOTALL)
-_NEXT = re.compile(rf"(?:[;,]|\band\b)(?={_NAME})")
+_NEXT = re.compile(rf"(?:[;,]|\b(?:and|und|with|mit)\b)(?={_NAME})")
 _EQUALS = re.compile(r"(?<![<>!=:])==?(?![=<>])")
 _IS_INEQUALITY = re.compile(r"[<>]|!=")
 
@@ -131,41 +133,6 @@ _QUOTED = re.compile(r"""(["'])([^"']*)\1""")
 _QUOTE, _ORDER = re.compile(r"[\"']"), re.compile(r"[<>]")
 
 
-#: What a verdict may be called.
-VERDICTS = {
-    "yes": "yes",
-    "true": "yes",
-    "ja": "yes",
-    "no": "no",
-    "false": "no",
-    "nein": "no",
-    "conditional": "conditional",
-}
-
-
-#: What a plant, or F, has or has not where a verdict on it is asked for.
-_PROPERTIES = {
-    "observability": {"observable", "beobachtbar"},
-    "controllability": {"controllable", "steuerbar"},
-    "detectability": {"detectable", "detektierbar"},
-    "stabilizability": {"stabilizable", "stabilisierbar"},
-    "F_stable": {"stable", "stabil"},
-}
-
-
-_DENIED = re.compile(r"(?:not |nicht |un|in)")
-
-
-def verdict_of(text: str, *asked: str) -> str | None:
-    """Return yes, no or conditional as a text says it of the task or field asked, `not observable`; None where it does not."""
-    word = " ".join(text.replace('"', " ").lower().split())
-    having = {word for name in asked for word in _PROPERTIES.get(name, ())}
-    denied = _DENIED.match(word)
-    if word in having:
-        return "yes"
-    return "no" if denied and word[denied.end() :] in having else VERDICTS.get(word)
-
-
 _BETWEEN = re.compile(r"\s*(?:[,;\n]|&&|\u2227|\b(?:and|und)\b)\s*")
 
 _OPERATOR = re.compile(r"!=|<=|>=|<|>")
@@ -177,7 +144,7 @@ def as_conditions(value: Any) -> Any:
         return [each for entry in value for each in as_conditions(entry)]
     if not isinstance(value, str):
         return [value]
-    text = value.strip().strip("[]").replace("<>", "!=").replace("/=", "!=")
+    text = in_inequalities(value).strip().strip("[]").replace("<>", "!=").replace("/=", "!=")
     found: list[str] = []
     for part in filter(None, _BETWEEN.split(text)):
         left = _OPERATOR.split(found[-1])[0] if found else ""
@@ -309,9 +276,13 @@ KEYS = ("student", "convention", "symbols", "let", "answer", "step")
 _STEP = ("relation", "where", "let")
 #: What tells a file of tables from a text of lines.
 _TABLES = re.compile(r"(?m)^[ \t]*(\[\[?[ \t]*(answer|step)\b|(student|convention|symbols|let)[ \t]*=[ \t]*[\"'\[{])")
+#: What to write where it is not known what is asked for.
+EXAMPLE = "write for example L = [19; 81]"
 #: What begins a remark.
 _REMARK = re.compile(r"[#%]")
 _RELATION = re.compile(r"[=<>]|!=")
+#: The left side of a characteristic equation, in the variable alone.
+_OF_ROOTS = re.compile(r"(?=.*(?<![A-Za-z])(?:s|z|λ|lambda)(?![A-Za-z]))(?:[\d\s^*+()./-]|s|z|λ|lambda|²|³)+")
 #: A formula in letters of matrices, R^-1 B' P, which is a line, and gives no value in place of an earlier one.
 _IN_LETTERS = re.compile(
     r"(?<![A-Za-z_])[A-ZΠΓ]'|(?<![A-Za-z_])[A-ZΠΓ]\s*\^\s*\(?-1|(?<![A-Za-z_])[A-ZΠΓ]\s+[A-ZΠΓ](?!\w)"
@@ -338,6 +309,8 @@ class Answer:
     values    by field, or by task a table by field; `loose` where some may be lines of a derivation only
     symbols   letters of the student's own, which are real
     note      how the file was read, where that is worth a word
+    said      what sentences say: observable, P is positive definite
+    written   what the student wrote for a value, by its name, or task.name, where that is known
     """
 
     student: str = ""
@@ -348,6 +321,8 @@ class Answer:
     steps: tuple[Step, ...] = ()
     loose: bool = False
     note: str = ""
+    said: tuple[Said, ...] = ()
+    written: Mapping[str, str] = field(default_factory=dict)
 
 
 def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer:
@@ -361,7 +336,14 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
     text = typed(given)
     if re.match(r"\s*\{\s*[\"}]", text) or _TABLES.search(text):
         return _of_tables(parse(text, where))
-    return _of_lines(without_latex(without_drawings(without_marks(text))), where)
+    found = without_latex(without_drawings(without_marks(text)))
+    own, lines = text.splitlines(), found.splitlines()
+    return _of_lines(found, where, own if len(own) == len(lines) else lines)
+
+
+def bare_value(text: str) -> str:
+    """Return the value that a text is, without words before it: s^2 + 5 s + 6 of "the polynomial is s^2 + 5 s + 6."."""
+    return as_value(without_words(without_latex(without_drawings(without_marks(typed(text)))).strip()))  # type: ignore[return-value]
 
 
 def states(text: str) -> bool:
@@ -369,36 +351,32 @@ def states(text: str) -> bool:
     return bool(_RELATION.search(text)) or ":" in text or text.lstrip().startswith("{")
 
 
-def _of_lines(text: str, where: str) -> Answer:
+def _of_lines(text: str, where: str, own: Sequence[str]) -> Answer:
     """Return the answer of lines: the last `NAME = value` of a name is the answer, and every line is a step.
 
-    Lines of conditions are the answer to a region that none names.  What is no relation is a line that cannot be read;
-    raises `ProblemErrors` where there are no others.
+    `own` are the lines as the student wrote them.  Lines of conditions are the answer to a region that none names.
+    What is no relation is a line that cannot be read; raises `ProblemErrors` where there are no others.
     """
-    kept, exceptions = _without_exceptions(_lines(text, where))
+    kept, said = _without_sentences(_lines(text, where))
+    kept, exceptions = _without_exceptions(kept)
     values: dict[str, Any] = {}
     steps: list[Step] = []
     conditions: list[str] = []
     errors: list[SymobsError] = []
     functions: set[str] = set()
+    written: dict[str, str] = {}
     in_case = False
     for number, line in kept:
         place = f"line {number}"
         in_case = bool(_CASE.match(line)) or (in_case and not _SECTION.match(line))
         defined = definition(line)
         if not defined:
-            steps.append(Step(line, place))
-            left, *members = (part.lstrip("=").strip() for part in _apart(_EQUALS, line))
-            if len(members) > 1 and members[-1] == "0":
-                members.pop()
-            is_equation = members[-1:] == ["0"] and left.startswith(("det", "|"))  # of the eigenvalues
-            if members and members[-1] and not is_equation and not _IS_INEQUALITY.search(line):
-                values |= {squashed(members[-1]): as_value(left), squashed(left): as_value(members[-1])}
-                found = coefficients_of(members)
-                values |= {name: as_value(text) for name, text in found.items() if name not in functions}
+            relation, found = _of_relation(line, functions)
+            steps.append(Step(relation, place))
+            values |= found
             if not _RELATION.search(line):
                 message = f'"{shown(line, 60)}" is no relation'
-                errors.append(InputError(message, where=place, repair="write for example L = [19; 81]"))
+                errors.append(InputError(message, where=place, repair=EXAMPLE))
             elif is_of_conditions(line):
                 conditions.append(line)
             continue
@@ -410,6 +388,7 @@ def _of_lines(text: str, where: str) -> Answer:
         is_kept = name in table and (in_case or _IN_LETTERS.search(defined.value) is not None)
         if value and (is_new or not is_kept):
             table[name] = value
+            written[defined.name] = _own_text(own[number - 1], defined)
         if not task and isinstance(value, str) and _is_relation(name, value):
             steps.append(Step(line if defined.is_chain else f"{name}{defined.argument} = {value}", place))
     if errors and len(errors) == len(kept):
@@ -418,7 +397,43 @@ def _of_lines(text: str, where: str) -> Answer:
         values["stable_if"] = conditions
     if exceptions or conditions:
         values.setdefault("conditions", exceptions or conditions)
-    return Answer(values=values, steps=tuple(steps), loose=True)
+    return Answer(values=values, steps=tuple(steps), loose=True, said=tuple(said), written=written)
+
+
+def _of_relation(line: str, functions: Collection[str]) -> tuple[str, dict[str, Any]]:
+    """Return the relation that a line without a definition is, and the values that it may give, by what stands beside them."""
+    left, *members = (part.lstrip("=").strip() for part in _apart(_EQUALS, line))
+    if members == ["0"] and _OF_ROOTS.fullmatch(left):
+        return f"chi(s) = {left}", {"chi": as_value(left)}
+    if len(members) > 1 and members[-1] == "0":
+        members.pop()
+        line = " = ".join([left, *members])
+    is_equation = members[-1:] == ["0"] and left.startswith(("det", "|"))  # of the eigenvalues
+    if not members or not members[-1] or is_equation or _IS_INEQUALITY.search(line):
+        return line, {}
+    found = {name: as_value(text) for name, text in coefficients_of(members).items() if name not in functions}
+    return line, {squashed(members[-1]): as_value(left), squashed(left): as_value(members[-1]), **found}
+
+
+def _own_text(line: str, defined: Definition) -> str:
+    """Return the value in a student's own line, the whole of a line where it is not plain which value that is."""
+    found = _DEFINITION.fullmatch(line.strip())
+    is_whole = not defined.is_chain and len(statements(line)) == 1 and not _opened(line)
+    if not is_whole or not (found or "\\begin" in line):
+        return defined.value
+    return found[3].strip() if found and found[1] == defined.name and found[3].strip() else line.strip()
+
+
+def _without_sentences(lines: Iterable[tuple[int, str]]) -> tuple[list[tuple[int, str]], list[Said]]:
+    """Return lines without sentences that say what has a property, and what they say."""
+    kept: list[tuple[int, str]] = []
+    said: list[Said] = []
+    for number, line in lines:
+        rest, found = what_is_said(line)
+        said += found
+        if rest:
+            kept.append((number, rest))
+    return kept, said
 
 
 def _without_exceptions(lines: Iterable[tuple[int, str]]) -> tuple[list[tuple[int, str]], list[str]]:
@@ -429,7 +444,7 @@ def _without_exceptions(lines: Iterable[tuple[int, str]]) -> tuple[list[tuple[in
         alone, *under = _WHERE.split(line, maxsplit=1)
         defined = definition(alone)
         name, said = (defined.name, defined.value) if defined else ("verdict", alone)
-        is_yes = name.rpartition(".")[2] == "verdict" and verdict_of(said, *_PROPERTIES) == "yes"
+        is_yes = name.rpartition(".")[2] == "verdict" and verdict_of(said, *PROPERTIES) == "yes"
         if line.startswith("conditions"):
             exceptions.append(line.removeprefix("conditions").lstrip(" :="))
         elif under and (is_yes or (defined and name.rpartition(".")[2] in _OF_PARAMETERS)):
@@ -446,13 +461,13 @@ _OF_PARAMETERS = {"rank", "verdict"}
 
 def _is_relation(name: str, value: str) -> bool:
     """Return whether a definition is a relation of a derivation, as a verdict and a region are not."""
-    return name != "stable_if" and verdict_of(value, *_PROPERTIES) is None
+    return name != "stable_if" and verdict_of(value, *PROPERTIES) is None
 
 
 def _lines(text: str, where: str) -> list[tuple[int, str]]:
     """Return the lines that say something, with their numbers; a matrix that is not closed goes on in the lines below it."""
     lines = enumerate(text.splitlines(), start=1)
-    split = [(i, plain_line(_REMARK.split(line, maxsplit=1)[0].strip())) for i, line in lines]
+    split = [(i, plain_line(in_inequalities(_REMARK.split(line, maxsplit=1)[0].strip()))) for i, line in lines]
     written = [(i, line) for i, line in split if line]
     _at_most(len(written), where)
     found: list[tuple[int, str]] = []
@@ -555,11 +570,16 @@ def _of_tables(data: Mapping[str, Any]) -> Answer:
         relation = text(step, "relation", f"{place}.relation", MAX_BYTES)
         read.append(Step(relation, said, letters(step, f"{place}.let")))
     student, convention = text(data, "student", "student"), text(data, "convention", "convention")
-    values = {str(key): plain(value) for key, value in table(data, "answer", "answer").items()}
+    given = table(data, "answer", "answer")
+    values = {str(key): plain(value) for key, value in given.items()}
     let = letters(data, "let")
     if errors:
         raise ProblemErrors(tuple(errors))
-    return Answer(student, convention, tuple(symbols), let, values, tuple(read))
+    tables = {f"{key}.": value for key, value in given.items() if isinstance(value, Mapping)} | {"": given}
+    written = {
+        f"{at}{name}": text for at, each in tables.items() for name, text in each.items() if isinstance(text, str)
+    }
+    return Answer(student, convention, tuple(symbols), let, values, tuple(read), written=written)
 
 
 # Lists as students write them: numbers in brackets, vectors, nothing; a comma between two digits has two readings.
@@ -567,8 +587,11 @@ def _of_tables(data: Mapping[str, Any]) -> Answer:
 
 _LIST = re.compile(r"\[[^][{}]*\]|\{[^][{}]*\}")
 _NOTHING = re.compile(r"none|keine|\[\s*\]|\{\s*\}|\u2205", re.IGNORECASE)
-_VECTORS = re.compile(r"\[[^][]*\](?:\s*[,;]\s*\[[^][]*\])*")
-_VECTOR = re.compile(r"\[[^][]*\]")
+_VECTOR = re.compile(r"\[[^][]*\]|\((?=[^()]*[,;])[^()]*\)")
+#: What stands around the vectors of a space: span{…}, <…>, {…}.
+_SPAN = re.compile(
+    r"(?:(?:span|lin|image|im|bild)\s*(?=[({<\[]))?\s*(?:\{(.*)\}|<(.*)>|⟨(.*)⟩|\((?=\s*[\[(])(.*)\)|(.*))", re.DOTALL
+)
 #: What sets numbers apart besides a comma: the blanks of "1,5 -2,5", not those of "1 - 2".
 _APART = r"[;\n]|(?<=\d)\s+(?=[-+]?\d)"
 
@@ -609,12 +632,11 @@ def has_two_readings(value: Any, length: int | None = None) -> bool:
 def as_kernel(value: Any, order: int) -> Any:
     """Return the vectors of a kernel as a list, none for {0}; the text of a single one as it is."""
     if isinstance(value, (str, int)):
-        text = str(value).strip()
-        inside = text[1:-1].strip() if text[:1] + text[-1:] == "{}" else text
-        if _NOTHING.fullmatch(text) or inside == "0":
+        text = readable(_MATRIX_CALL.sub(r"\1", str(value).strip()))
+        inside = next(part for part in _SPAN.fullmatch(text).groups() if part is not None).strip()  # type: ignore[union-attr]
+        if _NOTHING.fullmatch(text) or inside in {"0", ""}:
             return []
-        vectors = _VECTOR.findall(inside) if _VECTORS.fullmatch(inside) else []
-        value = vectors if len(vectors) > 1 or (inside != text and vectors) else text
+        value = _vectors_in(inside, order)
     elif isinstance(value, list) and len(value) == order:
         if not any(isinstance(entry, list) or "[" in str(entry) for entry in value):
             value = [value]  # the entries of a single vector
@@ -622,6 +644,50 @@ def as_kernel(value: Any, order: int) -> Any:
             value = [[entry for (entry,) in value]]  # a column
     vectors = value if isinstance(value, list) else [value]
     return [] if all(_is_zero(vector, order) for vector in vectors) else value
+
+
+#: Calls of SymPy and NumPy within a list of vectors.
+_MATRIX_CALL = re.compile(r"(?:\w+\.)?(?:Matrix|array|vector)\(\s*(\[[^][]*\])\s*\)")
+
+
+def _vectors_in(text: str, order: int) -> Any:
+    """Return the vectors of a text as lists of entries: those in brackets of their own, or the rows or columns of a matrix.
+
+    A text that is neither is unreadable: raises `InputError`.
+    """
+    inside = text[1:-1].strip() if re.fullmatch(r"\[\s*[\[(].*[\])]\s*\]", text, re.DOTALL) else text
+    found = _VECTOR.findall(inside)
+    rows = [[_entries_in(row) for row in vector[1:-1].split(";")] for vector in found]
+    if found and not _VECTOR.sub("", inside).strip(" ,;\n"):
+        if len(rows) == 1 and len(rows[0]) > 1 and len(rows[0][0]) > 1:  # a matrix
+            (matrix,) = rows
+            if len({*map(len, matrix)}) == 1 and len(matrix) == order:
+                return [[*column] for column in zip(*matrix, strict=True)]
+            return matrix
+        vectors = [[entry for row in vector for entry in row] for vector in rows]
+        if all(len(vector) == order for vector in vectors):
+            return vectors
+        message = f"vectors of {order} entries are expected"
+    elif order == 1 or re.fullmatch(r"[^][(){}]*", inside):
+        return text
+    else:
+        message = f'"{shown(text, 60)}" is no list of vectors'
+    example = ", ".join(str(int(k == 0)) for k in range(order))
+    raise InputError(message, repair=f"write for example span{{({example})}}")
+
+
+def _entries_in(row: str) -> list[str]:
+    parts = row.split(",") if "," in row else row.split()
+    return [part.strip() for part in parts if part.strip()]
+
+
+def as_sizes(value: Any, names: Iterable[str]) -> Any:
+    """Return sizes that are named, co: 1, c_no = 1, as a table, those left out being 0; another value as it is."""
+    if not isinstance(value, str):
+        return value
+    found = dict(re.findall(r"(\w+)['\"]?\s*[:=]\s*(\d+)", value))
+    known = [*names]
+    return {name: found.get(name, "0") for name in known} if found and {*found} <= {*known} else value
 
 
 def _is_zero(vector: Any, order: int) -> bool:

@@ -11,20 +11,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.audit.auditor import printed_entries
-from symobs.applications.checking.answers import Answer, plain, read_answer, states, written_text
+from symobs.applications.checking.answers import (
+    EXAMPLE,
+    MAX_BYTES,
+    Answer,
+    bare_value,
+    plain,
+    read_answer,
+    states,
+    written_text,
+)
 from symobs.applications.checking.derivations import is_of_conditions, judge_lines, judge_milestone
 from symobs.applications.checking.faults import Explained, explain_gain, explain_value, other_values
 from symobs.applications.checking.folders import text_of_answer, text_of_path
-from symobs.applications.checking.handwriting import entries_of, fields_of, listed_of, with_own_letters
-from symobs.applications.checking.judgement import (
-    OF_THE_PLANT,
-    asked_of,
-    exists,
-    field_called,
-    judge_task,
-    known_names,
-    rounds,
-)
+from symobs.applications.checking.handwriting import entries_of, fields_of, law_of, listed_of, with_own_letters
+from symobs.applications.checking.judgement import judge_task, rounds
+from symobs.applications.checking.parts import OF_THE_PLANT, asked_of, exists, field_called, known_names
 from symobs.applications.checking.regions import read_conditions
 from symobs.applications.checking.report import SHOW, TO_BE_READ, CheckReport, Line, Part
 from symobs.exact import Factored, Matrix, Scalar
@@ -69,6 +71,30 @@ def answer_file(checked: Checked, convention: Convention | None = None) -> str:
     return "\n".join(lines)
 
 
+def example_of(view: ResultInConvention, field: str) -> str:
+    """Return a line of the form that a part has, and not with its value."""
+    letter, right, variable = view.letter_of(field), view.result.fields.get(field), view.argument
+    value = _exact(right)
+    for first in (1, 2):  # one of them is not the solution
+        if isinstance(value, Matrix):
+            rows, columns = value.shape
+            entries = [[str(first + i * columns + j) for j in range(columns)] for i in range(rows)]
+            made, text = Matrix.of([[int(e) for e in row] for row in entries]), "; ".join(map(" ".join, entries))
+            if made != value:
+                return f"{letter} = [{text}]"
+        elif isinstance(value, Scalar):
+            text = f"({variable} + {first})^2" if variable in value.names else str(first)
+            if str(value) != text:
+                return f"{letter} = {text}"
+    if field == "stable_if":
+        return (
+            "1 < h and h < 2" if not (names := getattr(view.result.question, "parameters", ())) else f"{names[0]} > 1"
+        )
+    if isinstance(right, (list, tuple)):
+        return f"{letter} = 1, 2"
+    return f"{letter} = yes"
+
+
 def _shape(right: Any, field: str) -> str:
     """Return what is expected, without a word on its value."""
     table = factored_table(right)
@@ -96,9 +122,8 @@ def part_of(
     name = f"{view.task}.{judged.name}"
     weight = marking.parts.get(name, Fraction(1)) if counts else Fraction(0)
     right = _right(view, judgement.right if judged.there is None else judged.there, judged.letter)
-    part = Part(
-        name, judged.letter, judged.verdict, weight, Fraction(0), written_text(judged.given), hints=judged.hints
-    )
+    own, read = written_text(judged.own), reading_of(view, judged)
+    part = Part(name, judged.letter, judged.verdict, weight, Fraction(0), own, hints=judged.hints, read=read)
     part = replace(part, right=right, reason=judged.reason)
     if judged.verdict in TO_BE_READ:
         return replace(part, credit=None)
@@ -111,6 +136,18 @@ def part_of(
         case "wrong":
             return _explained(part, view, judgement, judged, marking)
     return part
+
+
+def reading_of(view: ResultInConvention, judged: Judged) -> str:
+    """Return how a value was read: K = [10 32], one row; of what cannot be read how far that was."""
+    value, letter = judged.value, judged.letter
+    if judged.name in view.result.gains and isinstance(value, Matrix) and view.standard(letter)[1] < 0:
+        value = -value
+    if not isinstance(value, Matrix):
+        return f"{letter} = {written_text(judged.given) if value is None else value}"
+    rows, columns = value.shape
+    size = "one number" if rows == columns == 1 else "one row" if rows == 1 else "one column" if columns == 1 else ""
+    return f"{letter} = {value}, {size or f'{rows} rows and {columns} columns'}"
 
 
 def missing(view: ResultInConvention, name: str, marking: Marking) -> Part:
@@ -431,8 +468,9 @@ class Checked:
         if handed_in.loose:
             judged = {task: _without_formulas(each, lines) for task, each in judged.items()}
         parts = self._parts(views, judged)
+        parts = tuple(replace(part, given=_as_written(part, handed_in)) for part in parts)
         if handed_in.loose:
-            lines = _without_answers(lines, parts)
+            lines = _without_answers(lines, parts, given)
         report = CheckReport(
             self.problem.title,
             handed_in.student,
@@ -475,7 +513,7 @@ class Checked:
         except InputError as error:
             error.where = where
             raise
-        return self.report(replace(read_answer(text, where), note=note), show, convention)
+        return self.report(replace(self.read(text, where), note=note), show, convention)
 
     def solution(self, convention: Convention) -> str:
         """Return the derivation of the solution as HTML."""
@@ -483,13 +521,28 @@ class Checked:
 
         return str(render(self.problem.document(self.results, convention), "html_fragment"))
 
+    def read(self, text: str, where: str = "answer") -> Answer:
+        """Return the answer of a text: its lines, or the one value that is asked for; raises `ProblemErrors`."""
+        try:
+            return read_answer(text, where)
+        except ProblemErrors as errors:
+            asked = self.asked(self.views())
+            for each in errors.errors:
+                if each.repair == EXAMPLE:
+                    each.repair = f"write for example {example_of(*asked[0])}"
+            value = bare_value(text) if len(asked) == 1 and len(text) < MAX_BYTES else ""
+            if not value or re.search(r"[^\W\d_]{4,}(?:\s+[^\W\d_]{2,}){2}", str(value)):
+                raise
+            ((view, name),) = asked
+            return Answer(values={view.task: {name: value}})
+
     def _answer(self, answer: object) -> Answer:
         """Return what was handed in: read, or the one value that is asked for."""
         if isinstance(answer, Answer):
             return answer
         if isinstance(answer, Path) or (isinstance(answer, str) and _is_path(answer)):
             text, note = text_of_path(Path(answer))
-            return replace(read_answer(text, "answer"), note=note)
+            return replace(self.read(text, "answer"), note=note)
         views = self.views()
         asked = self.asked(views)
         if isinstance(answer, Mapping) or (isinstance(answer, str) and (len(asked) != 1 or states(answer))):
@@ -554,6 +607,11 @@ def _given(
             errors.append(_unknown(key, views))
     if errors:
         raise ProblemErrors(tuple(errors))
+    for view in views:
+        for name, holds in answer.said:
+            field = "verdict" if name == view.task else name
+            if field in available(view) and field not in found[view.task]:
+                found[view.task][field] = "yes" if holds else "no"
     if answer.loose:
         _add_called_otherwise(found, answer, views, asked)
     return found
@@ -566,15 +624,32 @@ def _add_called_otherwise(
     asked: Sequence[tuple[ResultInConvention, str]],
 ) -> None:
     """Add what a text of lines calls by the letters of the page, by other usual names, or by its entries."""
-    called = fields_of(asked, answer.values)
+    beside = [
+        (view, name)
+        for view in views
+        for name in ("kernel", "roots", "poles")
+        if (view, name) not in asked and exists(view.result, name)
+    ]
+    called = fields_of([*asked, *beside], answer.values)
     for view in views:
         further = {field: value for (task, field), value in called.items() if task == view.task}
+        if "K" in view.result.fields and "K" not in answer.values and view.plant.inputs == 1:
+            law, sign = law_of(answer.values.get("u"), view.plant.order), view.standard(view.letter_of("K"))[1]
+            if law is not None:
+                further["K"] = [entry if sign < 0 else f"-({entry})" for entry in law]
         given = {view.standard(letter)[0] for letter in found[view.task]} - {*OF_THE_PLANT}
         for name, entry in (further | entries_of(view, answer.values) | listed_of(view, answer.values)).items():
             if name not in given:
                 found[view.task][name] = entry
         names, _ = known_names(view)
         found[view.task] = {name: with_own_letters(v, answer.values, names) for name, v in found[view.task].items()}
+
+
+def _as_written(part: Part, answer: Answer) -> str:
+    """Return what the student wrote, as far as that is known."""
+    task = part.part.partition(".")[0]
+    names = (f"{task}.{part.letter}", part.letter)
+    return next((answer.written[name] for name in names if part.given and name in answer.written), part.given)
 
 
 def _without_formulas(judgement: TaskJudgement, lines: Sequence[Line]) -> TaskJudgement:
@@ -591,7 +666,9 @@ def _without_formulas(judgement: TaskJudgement, lines: Sequence[Line]) -> TaskJu
     return replace(judgement, parts=tuple(kept))
 
 
-def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line, ...]:
+def _without_answers(
+    lines: Sequence[Line], parts: Sequence[Part], given: Mapping[str, Mapping[str, Any]]
+) -> tuple[Line, ...]:
     """Return the lines without those that mean nothing in a derivation and are parts of the answer, where it is told why.
 
     The last line of a letter is the answer: where that cannot be read, it is no line that could be true or false either,
@@ -612,7 +689,21 @@ def _without_answers(lines: Sequence[Line], parts: Sequence[Part]) -> tuple[Line
             return line.verdict == "true"
         return line.verdict != "unreadable"
 
-    return tuple(line for place, line in enumerate(lines) if says_more(place))
+    values = {_spaced(value) for table in given.values() for each in table.values() for value in _flat(each)}
+
+    def is_read_as_part(line: Line) -> bool:
+        texts = {
+            _spaced(text.strip())
+            for text in (line.relation, line.relation.rpartition("=")[2], line.relation.partition("=")[2])
+        }
+        return line.verdict == "unreadable" and bool(texts & values)
+
+    return tuple(line for place, line in enumerate(lines) if says_more(place) and not is_read_as_part(line))
+
+
+def _flat(value: Any) -> list[Any]:
+    """Return the texts of a value, of a list each, and the list as a row."""
+    return [*value, ", ".join(map(str, value))] if isinstance(value, list) else [value]
 
 
 def _spaced(value: Any) -> str:

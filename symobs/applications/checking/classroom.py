@@ -154,11 +154,13 @@ def _first_false(reports: Sequence[CheckReport]) -> list[dict[str, Any]]:
 
 
 def _agreement(found: Sequence[tuple[str, Part]]) -> list[dict[str, Any]]:
-    """Return the wrong values that several students share and no slip explains."""
+    """Return the wrong values that several students share and no slip explains, as one of them wrote each."""
     groups: dict[str, list[str]] = {}
+    shown_as: dict[str, str] = {}
     for student, part in found:
         if part.verdict == "wrong" and part.slip is None and part.given:
-            groups.setdefault(re.sub(r"\s+", " ", part.given.strip()), []).append(student)
+            text = shown_as.setdefault(part.read, re.sub(r"\s+", " ", part.given.strip()))
+            groups.setdefault(text, []).append(student)
     ranked = sorted(groups.items(), key=lambda item: (-len(item[1]), item[0]))
     return [{"given": text, "count": len(who), "students": who} for text, who in ranked if len(who) > 1]
 
@@ -185,11 +187,11 @@ def as_markdown(found: Mapping[str, Any], replaced: Sequence[str] = ()) -> str:
         lines += ["", f"## {plain(part)}", "", f"{said}.", ""]
         lines += [f"- {entry['count']} × {entry['slip'].replace('_', ' ')}" for entry in found["slips"][part]]
         lines += [
-            f"- {each['count']} × {plain(each['given'])}, which no slip explains" for each in found["agreement"][part]
+            f"- {each['count']} × {code(each['given'])}, which no slip explains" for each in found["agreement"][part]
         ]
     if found["first_false"]:
         lines += ["", "## First false lines", ""]
-        lines += [f"- {entry['count']} × {plain(entry['relation'])}" for entry in found["first_false"]]
+        lines += [f"- {entry['count']} × {code(entry['relation'])}" for entry in found["first_false"]]
     if found["variants"]:
         lines += ["", "## Variants", "", "| variant | students | marks on average |", "|---|---:|---:|"]
         lines += [

@@ -15,7 +15,7 @@ from symobs.applications.audit.evaluation import Misfit, common, equal, value_of
 from symobs.applications.audit.slips import SearchBudget
 from symobs.applications.checking.answers import Answer, Step, as_value, read_like
 from symobs.applications.checking.handwriting import EIGENVALUES, in_letters, named_entries
-from symobs.applications.checking.judgement import OF_THE_PLANT, exists, field_called, is_of_time
+from symobs.applications.checking.parts import OF_THE_PLANT, exists, field_called, is_of_time
 from symobs.applications.checking.regions import SOME_PIECES, compare, part_described, read_conditions
 from symobs.applications.checking.report import Line
 from symobs.exact import Matrix, Scalar, TooLarge

@@ -49,8 +49,11 @@ def without_marks(text: str) -> str:
 # -- LaTeX -------------------------------------------------------------------------------------------------------------
 
 
-_TABLE = r"(?:[bpB]?matrix|array)\}"
+_TABLE = r"(?:[bpBvV]?(?:small)?matrix|array)\}"
 _ENVIRONMENT = re.compile(rf"\\begin\{{{_TABLE}(?:\{{[lcr|]*\}})?(.*?)\\end\{{{_TABLE}", re.DOTALL)
+_DISPLAY = re.compile(
+    r"\\(?:begin|end)\{(?:align|equation|gather|multline|eqnarray|split|aligned|displaymath|math)\*?\}"
+)
 _ROW_END = re.compile(r"\\\\(?:\[[^]]*\])?|\\cr\b")
 #: Commands with nothing to read, those that only set their argument, and fences.
 _SPACES = re.compile(r"(?<!\\)\\(?:[,;:! ]|q?quad\b|displaystyle\b)|\\(?:left|right|[bB]igg?[lr]?)(?![A-Za-z])\.?|\$")
@@ -60,7 +63,7 @@ _SET = re.compile(
 _APPLIED = re.compile(
     r"\\(sinh?|cosh?|exp)\s*(?:(?=\()|([\d.]*\s*(?:\\[A-Za-z]+|[A-Za-z](?![A-Za-z]))(?:_\w+)?)(?=\s*(?:$|[-+=,;&)\]}]|\\\\)))"
 )
-_QUOTIENT = re.compile(r"\\[dt]?frac\s*(?:\{([^{}]*)\}|(\d))\s*(?:\{([^{}]*)\}|(\d))")
+_QUOTIENT = re.compile(r"\\[dtc]?frac\s*(?:\{([^{}]*)\}|(\d))\s*(?:\{([^{}]*)\}|(\d))")
 #: Groups of LaTeX within each other.
 _DEEPEST = 20
 _ROOT = re.compile(r"\\sqrt\s*\{([^{}]*)\}")
@@ -75,7 +78,7 @@ def without_latex(text: str) -> str:
     if not re.search(r"\\[][()A-Za-z]|[\^_]\{|\$", text):
         return text
     text = re.sub(r"\\text\{[^{}]*\}\s*\\qquad", "", text)  # the words before a display
-    text = re.sub(r"(?<!\\)\\[][()]", " ", text)  # the signs around one
+    text = re.sub(r"(?<!\\)\\[][()]|~(?!=)", " ", text)  # the signs around one, and blanks
     text = re.sub(r"\\bar\s*\{?\s*([A-Za-z])\s*\}?", r"\1_bar", _SPACES.sub(" ", text))
     for _ in range(_DEEPEST):
         before = text
@@ -87,6 +90,7 @@ def without_latex(text: str) -> str:
         if before == text:
             break
     text = _ENVIRONMENT.sub(lambda found: _rows_of_latex(found[1]), text)
+    text = _SET.sub(lambda f: f[1] if f[1] is not None else f[2], _DISPLAY.sub("\n", text))
     text = re.sub(r"(?<=[A-Za-z0-9])e\^", " e^", text)
     text = _APPLIED.sub(lambda f: f" {f[1]}({f[2]})" if f[2] else f" {f[1]}", text)
     text = re.sub(r"\\([A-Za-z]+)(_?)", lambda f: _SIGNS.get(f[1], f" {f[1]}{f[2] or ' '}"), text)
@@ -187,7 +191,7 @@ _LETTER_TURNED = re.compile(
     r"((?<![A-Za-z0-9_])[A-ZΠΓ](?:_?[a-z0-9])?|\([^()]*[A-ZΠΓ][^()]*\))\s*(?:\^\s*\(?T\)?(?!\w)|\.T\b|ᵀ)"
 )
 _INVERSE = re.compile(r"(?<!\w)inv\(\s*([A-Z]\w*)\s*\)")
-_DIAGONAL = re.compile(r"(?<!\w)(?:np\.|sp\.)?(?:diag|Diag)\(\s*\[?([^()\[\]]*)\]?\s*\)")
+_DIAGONAL = re.compile(r"(?<!\w)(?:np\.|sp\.)?[dD]iag\(\s*\[?((?:[^()\[\]]|\([^()]*\))*)\]?\s*\)")
 _UNIT = re.compile(r"(?<!\w)(?:(?:np\.|sp\.)?eye\(\s*(\d)\s*\)|(?:np\.)?identity\(\s*(\d)\s*\)|I_(\d)(?!\w))")
 _ZEROS = re.compile(r"(?<!\w)(?:np\.)?zeros\(\s*\(?(\d)\s*,\s*(\d)\)?\s*\)")
 #: Values at an instant that have letters of their own: x(0), x_1(0), W(0, T).
@@ -201,7 +205,7 @@ def unit_matrix(order: int) -> str:
 
 
 def _diagonal(found: re.Match[str]) -> str:
-    entries = re.split(r"\s*,\s*" if "," in found[1] else r"\s+", found[1].strip())
+    entries = _entries(found[1])
     return _written([[entry if i == j else "0" for j in range(len(entries))] for i, entry in enumerate(entries)])
 
 
@@ -217,7 +221,9 @@ def in_matrices(text: str) -> str:
 
 def readable(text: str) -> str:
     """Return the text of a value as a problem file has it."""
-    text = in_matrices(without_latex(text).replace("÷", "/"))
+    text = _QUOTED_MATRIX.sub(r"[\1]", without_latex(text).replace("÷", "/"))
+    text = _OF_BLANKS.sub(lambda f: f"({', '.join(f[1].split())})", _OF_ANGLE.sub(r"\1(\2)", text))
+    text = in_matrices(text)
     text = _SQUARE_ROOT.sub(lambda f: f"sqrt({f[1].strip('()') if f[1] else f[2]})", text)
     text = _BEFORE_MATRIX.sub(r"(\1)*", text)
     text = _RATIONAL.sub(lambda f: f"(({f[1].strip(QUOTES)})/({f[2] or 1}))", text)
@@ -225,6 +231,37 @@ def readable(text: str) -> str:
     text = _TURNED.sub(r"\1'", text)
     text = _TRANSPOSED.sub(lambda found: _turned(found["inside"]), text)
     return _summed(text) if len(_MATRIX.findall(text)) > 1 else text
+
+
+def law_of(text: Any, states: int) -> list[str] | None:
+    """Return the coefficients of the states in u = -18 x1 - 6 x2 or u = -[18 6] x; None for another text."""
+    if not isinstance(text, str):
+        return None
+    if row := re.fullmatch(r"\s*(-?)\s*(\[[^][]*\])\s*\*?\s*x", text):
+        (entries,) = rows if len(rows := _rows(row[2])) == 1 else ([],)
+        return [f"{row[1]}({entry})" for entry in entries] or None
+    terms = re.findall(r"([-+]?)\s*((?:[^-+()]|\([^()]*\))*?)\s*\*?\s*(?<![A-Za-z])x_?(\d)\s*", text)
+    places = [int(place) for _, _, place in terms]
+    whole = "".join(f"{sign}{factor}x{place}" for sign, factor, place in terms)
+    if (
+        len({*places}) != len(places)
+        or not places
+        or max(places) > states
+        or re.sub(r"[\s*_]", "", text) != re.sub(r"[\s*]", "", whole)
+    ):
+        return None
+    found = dict.fromkeys(range(1, states + 1), "0")
+    found |= {int(place): f"{sign}({factor.strip() or 1})" for sign, factor, place in terms}
+    return [*found.values()]
+
+
+def without_words(text: str) -> str:
+    """Return a text without words before its value, up to a colon or to *is*; a text of other words as it is."""
+    found = re.fullmatch(
+        r"((?:[^\W\d_]{2,}\s+)*[^\W\d_]{2,}\s*(?::|(?<=\bis)|(?<=\bist)|(?<=\blautet)))\s+(\S.*?)\.?", text, re.DOTALL
+    )
+    words = re.findall(r"[^\W\d_]+", found[1].lower()) if found else []
+    return found[2] if found and all(word in _AROUND or word.endswith(_NOUNS) for word in words) else text
 
 
 def in_letters(text: str, names: Collection[str], variable: str) -> str:
@@ -235,6 +272,7 @@ def in_letters(text: str, names: Collection[str], variable: str) -> str:
         other = f"{letter}{'' if line else '_'}{digits}"
         return other if found[0] not in names and other in names else found[0]
 
+    text = re.sub(r"(λ|lambda|lam)\s*I(?!\w)", r"\1*I", text)
     text = _TOGETHER.sub(lambda found: found[0] if found[0] in names else "*".join(found[0]), text)
     text = _INDEXED.sub(declared, text)
     text = _NAME.sub(lambda found: _as_product(found[0], names), text)
@@ -405,19 +443,50 @@ def without_and(value: Any) -> Any:
 # -- lines ---------------------------------------------------------------------------------------------------------------
 
 
-_LEADING = re.compile(r"(?:(?:[^\W\d_]{2,}|=>|⇒|->|→|∴)[,:]?\s+)+(?=[A-Za-z]\w*(?:\([stz]\))?\s*:?=(?![=<>]))")
+_LEADING = re.compile(r"(?:(?:[^\W\d_]{2,}|=>|⇒|->|→|∴)[,:]?\s+)+(?=[A-Za-z]\w*(?:\([stz]\)|\^T|')?\s*:?=(?![=<>]))")
+#: A gain that is a vector, k^T = (1, 2) or l = (1, 2).
+_SMALL = re.compile(r"(?:k\s*(?:'|\^\s*T|ᵀ)|l)\s*=\s*(?=[\[(])")
+_SEVERAL = re.compile(r"(?:s|λ|lambda|lam)_?\{?1,\s*\d\}?\s*=")
+_SIZES = re.compile(r"sizes?\s*[:=]\s*(.*=.*)")
 _ARROW = re.compile(r"(?:=>|⇒|->|→|∴)\s*")
 _COLON = re.compile(r"([A-Za-z]\w*)\s*:\s+(?!=)")
-_LEFT_TURNED = re.compile(r"(?:transpose\(\s*([A-Z]\w*)\s*\)|([A-Z]\w*)\s*(?:'|\^\s*T|\.T|ᵀ))\s*=\s*([^=]*\[[^=]*)")
+_LEFT_TURNED = re.compile(
+    r"(?:transpose\(\s*([A-Z]\w*)\s*\)|([A-Z]\w*)\s*(?:'|\^\s*T|\.T|ᵀ))\s*=\s*([^=]*(?:\[|\((?=[^()]*,))[^=]*)"
+)
+#: A transfer function between its signals, Y(s) = ... U(s).
+_OF_SIGNALS = re.compile(r"Y(?:\(([sz])\))?\s*=\s*(.+?)\s*\*?\s*U(?:\([sz]\))?")
+_OF_BLANKS = re.compile(r"\((\s*-?[\d./]+(?:\s+-?[\d./]+)+\s*)\)(?=\s*(?:'|\^|\.T|ᵀ))")
+#: The sine of one letter, with a factor, without parentheses.
+_OF_ANGLE = re.compile(
+    r"(?<![A-Za-z_])(sinh?|cosh?)\s+"
+    r"((?:[\d.]+\s*\*?\s*)?(?:[A-Za-z]\w*\s*\*?\s+)?t|(?:[\d.]+\s*\*?\s*)?[A-Za-z]\w*(?=\s*(?:$|[-+,;\])])))(?![\w(])"
+)
+_QUOTED_MATRIX = re.compile(r"""(?:\w+\.)?matrix\(\s*["']([^"'\[\]]*)["']\s*\)""")
 _OF_P = re.compile(r"([A-Za-zχφ]\w*\s*)\(\s*(?:p|lambda|λ)\s*\)(?=\s*=)")
 _WORDS = ((re.compile(r"&&|\u2227|\bund\b"), " and "), (re.compile(r"\|\||\u2228|\boder\b"), " or "))
 _TURNED_ORDER = re.compile(r"([^<>=]*)(?:=>|=<)([^<>=]*)")
 #: Words that stand before a relation and change nothing.
 _AROUND = frozenset(
     """a an the this gain gains feedback observer state matrix matrices compensator controller answer result solution step
-    response transfer function characteristic polynomial is are thus so hence also then therefore we get obtain have gives
+    response transfer function characteristic polynomial eigenvalues eigenvalue poles with
+    therefore finally is are thus so hence also then therefore we get obtain have gives
     yields der die das ein eine verstärkung rückführung beobachter regler ergebnis lösung antwort polynom charakteristische
-    lautet ist sind folglich damit somit daher wir erhalten""".split()  # noqa: SIM905 - prose
+    charakteristisches eigenwerte eigenwert mit lautet lauten ist sind folglich damit somit daher wir erhalten""".split()  # noqa: SIM905 - prose
+)
+
+
+#: What compounds of German end in.
+_NOUNS = (
+    "verstärkung",
+    "rückführung",
+    "matrix",
+    "vektor",
+    "funktion",
+    "polynom",
+    "regler",
+    "beobachter",
+    "werte",
+    "lösung",
 )
 
 
@@ -425,10 +494,16 @@ def plain_line(line: str) -> str:
     """Return a line without the words before its relation and the point behind it, its letter on the left alone."""
     line = in_matrices(_ARROW.sub("", line, count=1) if _ARROW.match(line) else line)
     words = _LEADING.match(line)
-    if words and {*re.findall(r"[^\W\d_]+", words[0].lower())} <= _AROUND:
+    if sizes := _SIZES.fullmatch(line):
+        return f"sizes = {sizes[1].replace('=', ':')}"
+    if words and all(word in _AROUND or word.endswith(_NOUNS) for word in re.findall(r"[^\W\d_]+", words[0].lower())):
         line = line[words.end() :]
     if line.endswith(".") and not line.endswith(".."):
         line = line[:-1].rstrip()
+    line = _SEVERAL.sub("eigenvalues =", line)
+    line = _SMALL.sub(lambda f: f"{f[0][0].upper()} = ", line) if _SMALL.match(line) else line
+    if signals := _OF_SIGNALS.fullmatch(line):
+        line = f"Y/U = {signals[2]}"
     line = _COLON.sub(r"\1 = ", line, count=1) if _COLON.match(line) and "=" not in line else line
     if turned := _LEFT_TURNED.fullmatch(line):
         line = f"{turned[1] or turned[2]} = {_turned(v) if _MATRIX.fullmatch(v := readable(turned[3].strip())) else v}"
@@ -457,8 +532,10 @@ _CALLED: dict[str, re.Pattern[str]] = {
     "controllability.rank": re.compile(rf"(?:rank|rang|rk)\(?{_CTR}\)?", re.IGNORECASE),
     "observability.matrix": re.compile(_O),
     "observability.rank": re.compile(rf"(?:rank|rang|rk)\(?{_O}\)?", re.IGNORECASE),
-    "observability.kernel": re.compile(rf"(?:ker|kern|null)\(?{_O}\)?"),
-    "gramian.matrix": re.compile(r"[WPQ](?:_?[cors])?"),
+    "observability.kernel": re.compile(rf"(?:ker|kern|null|N)\(?{_O}\)?", re.IGNORECASE),
+    "roots": re.compile(r"eig(?:envalues?|enwerte?|s)?(?:\(A\))?|roots|Nullstellen", re.IGNORECASE),
+    "poles": re.compile(r"eig(?:envalues?|enwerte?|s)?(?:\(A-[BL][KC]\))?|poles?|Pole|Polstellen", re.IGNORECASE),
+    "gramian.matrix": re.compile(r"[WPQ](?:_?[corsT])?"),
     "matrix_exponential.matrix": re.compile(r"(?:e\^\(?At\)?|expm\(At\)|Phi|exp_At)"),
     "zero_order_hold.A": re.compile(r"A_?d|Phi"),
     "zero_order_hold.B": re.compile(r"B_?d|Gamma"),
@@ -492,7 +569,10 @@ def fields_of(asked: Sequence[tuple[ResultInConvention, str]], values: Mapping[s
     )
     own = set[str]().union(*(letters_of(view, field) for view, field in asked))
     for view, field in asked:
-        letters, part = letters_of(view, field), (view.task, field)
+        owner = next(
+            (each for each, letter in view.result.letters.items() if letter == view.result.letters.get(field)), field
+        )
+        letters, part = letters_of(view, field) if owner == field else set(), (view.task, field)
         pattern = _CALLED.get(f"{view.task}.{field}", _CALLED.get(field))
         by_letter = [values[key] for key, name in keys.items() if name in letters]
         by_pencil = [values[key] for key, name in keys.items() if "chi" in letters and _PENCIL.fullmatch(name)]

@@ -38,6 +38,7 @@ class Part:
     credit    of the weight, None where a human has to decide
     effect    what a gain does: its polynomial, and whether that is stable
     right     the right value, in a report that shows the solution
+    read      how the value was read: K = [10 32], one row
     """
 
     part: str
@@ -54,6 +55,7 @@ class Part:
     effect: Mapping[str, str] = field(default_factory=dict)
     hints: tuple[str, ...] = ()
     right: str | None = None
+    read: str = ""
 
 
 @dataclass
@@ -252,6 +254,7 @@ def _part(part: Part) -> dict[str, Any]:
         "effect": dict(part.effect) or None,
         "hints": list(part.hints),
         "right": part.right,
+        "read": part.read,
     }
 
 
@@ -278,6 +281,10 @@ def _bounded(part: Part, level: int) -> Part:
 
 class CheckReport(ReportData):
     """The report on an answer: `.verdict`, `.score`, `.total`, `.parts`, `.lines`, `.first_false`."""
+
+    def echo(self) -> str:
+        """Return how each part of the answer was read, with no word on whether it is right."""
+        return echo(self)
 
     def to_text(self) -> str:
         """Return the report as plain text, one line a part."""
@@ -335,6 +342,7 @@ def schema() -> dict[str, Any]:
         effect={"type": ["object", "null"], "additionalProperties": _TEXT},
         hints=_TEXTS,
         right=_TEXT_OR_NULL,
+        read=_TEXT,
     )
     line = _named(
         {"from": _TEXTS},
@@ -396,6 +404,22 @@ def text(report: ReportData) -> str:
     return "\n".join([*lines, ""])
 
 
+def echo(report: ReportData) -> str:
+    """Return how each part was read, one line a part, and why where it cannot be read; nothing is said on what is right."""
+    from symobs.pages.formats.text import printable  # noqa: PLC0415 - each format pays for its own
+
+    names, lines = names_of(report), list[str]()
+    for part in report.parts:
+        if part.verdict == "unreadable":
+            lines += _wrapped(printable(f"{names[part.part]} cannot be read: {part.given}: {part.reason}"), 2)
+        elif part.given:
+            lines += _wrapped(printable(of_numbers(part.read)), 2)
+    lines += [f"{line.where} cannot be read: {line.relation}" for line in report.lines if line.verdict == "unreadable"]
+    lacking = [names[part.part] for part in report.parts if part.weight and part.verdict == "missing"]
+    lines += [f"no value for {', '.join(lacking)}"] if lacking else []
+    return "\n".join([*lines, ""])
+
+
 def markdown(report: ReportData) -> str:
     """Return a report as Markdown."""
     from symobs.pages.formats.markdown import plain  # noqa: PLC0415 - each format pays for its own
@@ -444,8 +468,21 @@ def sentences(part: Part, names: Mapping[str, str], *, effect: bool = True) -> I
         if part.effect.get("stable") == "no":
             yield "it is not stable"
     yield from part.hints
+    if part.verdict != "unreadable" and effect and is_read_otherwise(part):
+        yield f"read as {of_numbers(part.read)}"
     if effect and part.right is not None and part.verdict != "right":
         yield f"right: {part.right}"
+
+
+def is_read_otherwise(part: Part) -> bool:
+    """Return whether a value was rewritten to be read, by more than blanks, commas, stars and decimals."""
+    letter, _, read = part.read.partition(" = ")
+    shapes = (
+        re.sub(r"[\s,;*\[\]()'\"]|one (?:row|column|number)|\d+ rows and \d+ columns", "", each)
+        for each in (part.given, read)
+    )
+    mine, value = (each.replace("**", "^").removeprefix(letter).lstrip("=") for each in shapes)
+    return bool(part.given) and part.verdict == "wrong" and sorted(mine) != sorted(value) and len(part.read) < _WIDTH
 
 
 def _place(place: Any) -> str:
@@ -537,7 +574,16 @@ def _section(part: Part, names: Mapping[str, str]) -> Iterator[str]:
     extra = f", {part.credit} of its marks" if credit else ""
     yield f"<h2>{plain(names[part.part])}: {_WORDS[part.verdict]}{extra}</h2>"
     if part.given:
-        yield f"<p>You gave {_math(part.given)}</p>"
+        yield f"<p>You wrote <code>{plain(beginning(part.given))}</code></p>"
+    if part.read and part.verdict not in {"unreadable", "missing"}:
+        read = re.fullmatch(
+            r"(\S+) = (.*?)((?:, (?:one (?:row|column|number)|\d+ rows and \d+ columns))?)", part.read, re.DOTALL
+        )
+        yield (
+            f"<p>This was read as {_math(read[2])}{plain(read[3])}</p>"
+            if read
+            else f"<p>This was read as {plain(part.read)}</p>"
+        )
     for said in sentences(part, names, effect=False):
         yield f"<p>{plain(_sentence(said))}</p>"
     if part.effect and part.verdict == "wrong":

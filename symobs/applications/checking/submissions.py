@@ -436,26 +436,18 @@ def report_of(problem: str, folder: str, submission: Submission, show: str) -> C
     """Return the report on a submission: an answer that cannot be read harms no other one, nor does a bug of ours."""
     checked = solved(problem, folder)
     try:
-        return checked.report(answer_of(submission), show, None, submission.variant)
+        return checked.report(answer_of(submission, checked), show, None, submission.variant)
     except SymobsError as error:
         return checked.without_answer(submission.student, submission.variant, "unreadable", str(error), show)
     except (ArithmeticError, AssertionError, AttributeError, LookupError, RuntimeError, TypeError, ValueError):
         return checked.without_answer(submission.student, submission.variant, "undecided", DAMAGED, show)
 
 
-def answer_of(submission: Submission) -> Answer:
+def answer_of(submission: Submission, checked: Checked) -> Answer:
     """Return what a submission says; raises `ProblemErrors` where it cannot be read."""
     if submission.text is not None:
-        read_as = read_answer(submission.text)
-        return Answer(
-            submission.student,
-            submission.convention or read_as.convention,
-            read_as.symbols,
-            read_as.let,
-            read_as.values,
-            read_as.steps,
-            read_as.loose,
-        )
+        found = checked.read(submission.text)
+        return replace(found, student=submission.student, convention=submission.convention or found.convention)
     values: dict[str, Any] = {}
     size = len(submission.steps)
     for name, value in (submission.values or {}).items():

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from symobs.applications.batch.jobs import canonical, digest
 from symobs.applications.batch.solving import problem_of
 from symobs.applications.batch.solving import recheck as recheck_answers
-from symobs.applications.checking.judgement import asked_of
+from symobs.applications.checking.parts import asked_of
 from symobs.applications.variants.constraints import UNLIKE, beyond, broken, profile, unknown_names
 from symobs.applications.variants.constructions import CONSTRUCTIONS
 from symobs.applications.variants.drawing import (

@@ -43,6 +43,7 @@ FORMATS = {"text": ".txt", "markdown": ".md", "html": ".html", "json": ".json"}
     help="Write to PATH, whose suffix names the format; for a class the folder of the results.",
 )
 @click.option("--asked", is_flag=True, help="Print an empty answer file: what an answer may hold.")
+@click.option("--echo", is_flag=True, help="Print how the ANSWER is read, and no word on whether it is right.")
 @click.option("--submissions", metavar="PATH", help="Check a class: a CSV or JSON Lines file, or a folder of answers.")
 @click.option("--map", "mapped", multiple=True, metavar="COLUMN=FIELD", help="Read a column of the CSV as a field.")
 @click.option("--variants", metavar="MANIFEST", help="The class has variants of PROBLEM: those of this manifest.")
@@ -56,6 +57,7 @@ def command(
     show: str,
     target: str | None,
     asked: bool,  # noqa: FBT001 - click's signature
+    echo: bool,  # noqa: FBT001 - click's signature
     submissions: str | None,
     mapped: tuple[str, ...],
     variants: str | None,
@@ -99,11 +101,10 @@ def command(
         assert answer is not None  # noqa: S101 - one of the three is there
         name = None if convention is None else convention_name
         raw = read_bytes(answer, "an answer file", MOST_BYTES)
-        return _outcome(
-            checked.report_of_file(raw, place_of(answer), show, name),
-            chosen,
-            target,
-        )
+        report = checked.report_of_file(raw, place_of(answer), "place" if echo else show, name)
+        if echo:
+            return Outcome(((report.echo(), target),), (), 3 if report.verdict == "unreadable" else 0)
+        return _outcome(report, chosen, target)
 
     run_work(work, timeout, memory, place_of(problem))
 

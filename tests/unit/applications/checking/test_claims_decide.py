@@ -56,6 +56,7 @@ def test_a_text_writes_a_list_in_brackets(given: str, verdict: str) -> None:
     problem = (EXAMPLES / "servo_initial_state.toml").read_text("utf-8")
     report = Checked.of(problem).report(f"x0 = {given}\n")
     assert [part.verdict for part in report.parts] == [verdict]
+    assert {line.verdict for line in report.lines} <= {"true" if verdict == "right" else "false"}
 
 
 def test_what_follows_in_the_other_coordinates_says_so() -> None:

@@ -109,7 +109,7 @@ def test_nothing_is_given_away_to_any_student_of_a_class() -> None:
         seen |= {part.slip for part in whole.parts} | {line.verdict for line in whole.lines}
         for show in ("place", "verdict"):
             bounded = whole.bounded(show)
-            ours = replace(bounded, lines=(), parts=tuple(replace(part, given="") for part in bounded.parts))
+            ours = replace(bounded, lines=(), parts=tuple(replace(part, given="", read="") for part in bounded.parts))
             assert _given_away(ours, f"{K}{L}{F}", "") == []
         assert not any(line.reason or line.right for line in whole.bounded("place").lines)
         assert _given_away(whole, f"{K}{L}{F}", "") != []
