@@ -73,6 +73,7 @@ _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
 FORMAT_PACKAGE: str
+PICTURES: str
 FUNCTIONS: dict[str, str]
 SYNONYMS: dict[str, str]
 __version__: str

@@ -7,7 +7,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from symobs.ground.errors import UsageError
+from symobs.ground.errors import DerivationRejected, UsageError
 from symobs.pages.drawings.plot_layout import plot_scene
 from symobs.pages.drawings.scene import FONT_SIZE, NARROWEST, RADIUS, STYLES, arrow_head, caption_below, head_of
 from symobs.pages.drawings.svg import svg_file
@@ -219,6 +219,8 @@ def picture_file(results: Sequence[Result], path: str, language: str = "en") -> 
     """Return the plot of the first result with one, in the format of the suffix of `path`, its caption in a language."""
     check_target(path)
     shown = ((result, picture) for result in results for picture in pictures_of(result))
+    if any(result.picture is not None and not is_shown(result.picture, result) for result in results):
+        raise DerivationRejected("the page shows another picture")
     result, picture = next(shown, (None, None))
     if result is None or picture is None:
         message = f"there is no picture of {', '.join(result.task for result in results)}"
@@ -252,10 +254,14 @@ def _written(picture: Drawn, document: Document, suffix: str) -> bytes:
         case ".tex":
             return tikz_file(picture, latex).encode()
         case _:
-            kind, buffer = _BY_MATPLOTLIB[suffix], BytesIO()
-            drawn = drawn_by_matplotlib([picture], latex, text)
-            drawn.savefig(buffer, format=kind, dpi=_RESOLUTION, metadata=_METADATA[kind])
-            return buffer.getvalue()
+            return saved(drawn_by_matplotlib([picture], latex, text), _BY_MATPLOTLIB[suffix])
+
+
+def saved(drawn: Figure, kind: str) -> bytes:
+    """Return a figure as `png` or `pdf`, the same bytes every time."""
+    buffer = BytesIO()
+    drawn.savefig(buffer, format=kind, dpi=_RESOLUTION, metadata=_METADATA[kind])
+    return buffer.getvalue()
 
 
 def is_shown(picture: Picture, result: Result) -> bool:

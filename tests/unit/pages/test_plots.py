@@ -15,7 +15,7 @@ import symobs
 from symobs.formula.tree import Environment, Letter, Relation
 from symobs.ground.errors import UsageError
 from symobs.pages.drawings.curve_labels import clipped
-from symobs.pages.drawings.plot_file import drawn_by_matplotlib
+from symobs.pages.drawings.plot_file import drawn_by_matplotlib, saved
 from symobs.pages.drawings.svg import measure_for as measure_svg
 from symobs.pages.drawings.svg import svg, svg_file, svg_scene
 from symobs.pages.drawings.tikz import measure_for as measure_latex
@@ -133,10 +133,10 @@ def test_svg_is_whole_and_needs_nothing_else(name: str) -> None:
 def test_matplotlib_draws_the_same(name: str) -> None:
     latex, text = printers(name)
     picture = ALL[name][0]()
-    png = drawn_by_matplotlib(picture, "png", latex, text)
+    png = saved(drawn_by_matplotlib([picture], latex, text), "png")
     assert png.startswith(b"\x89PNG\r\n\x1a\n")
-    assert png == drawn_by_matplotlib(picture, "png", latex, text)
-    assert drawn_by_matplotlib(picture, "pdf", latex, text).startswith(b"%PDF-")
+    assert png == saved(drawn_by_matplotlib([picture], latex, text), "png")
+    assert saved(drawn_by_matplotlib([picture], latex, text), "pdf").startswith(b"%PDF-")
 
 
 @pytest.mark.parametrize("place", ["10^20", "10^40"])
@@ -153,7 +153,7 @@ def test_without_matplotlib_the_repair_is_named(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     with pytest.raises(UsageError, match="pip install matplotlib"):
-        drawn_by_matplotlib(hand.interval(), "png", LatexPrinter(), TextPrinter())
+        drawn_by_matplotlib([hand.interval()], LatexPrinter(), TextPrinter())
 
 
 # -- terminals --------------------------------------------------------------------------------------------------------
