@@ -235,7 +235,7 @@ def readable(text: str) -> str:
 
 def law_of(text: Any, states: int) -> list[str] | None:
     """Return the coefficients of the states in u = -18 x1 - 6 x2 or u = -[18 6] x; None for another text."""
-    if not isinstance(text, str):
+    if not isinstance(text, str) or len(text) > _LONGEST:
         return None
     if row := re.fullmatch(r"\s*(-?)\s*(\[[^][]*\])\s*\*?\s*x", text):
         (entries,) = rows if len(rows := _rows(row[2])) == 1 else ([],)
@@ -257,6 +257,8 @@ def law_of(text: Any, states: int) -> list[str] | None:
 
 def without_words(text: str) -> str:
     """Return a text without words before its value, up to a colon or to *is*; a text of other words as it is."""
+    if len(text) > _LONGEST:
+        return text
     found = re.fullmatch(
         r"((?:[^\W\d_]{2,}\s+)*[^\W\d_]{2,}\s*(?::|(?<=\bis)|(?<=\bist)|(?<=\blautet)))\s+(\S.*?)\.?", text, re.DOTALL
     )

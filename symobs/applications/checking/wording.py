@@ -56,10 +56,14 @@ VERDICTS = {
 def verdict_of(text: str, *asked: str) -> str | None:
     """Return yes, no or conditional as a text says it of the task or field asked, `not observable`; None where it does not."""
     word = " ".join(text.replace('"', " ").lower().split())
-    found = _SENTENCE.fullmatch(word)
+    found = _SENTENCE.fullmatch(word) if len(word) <= _LONGEST else None
     if found and {_said(found).name, f"F_{_said(found).name}"} & {*asked}:
         return "yes" if _said(found).holds else "no"
     return VERDICTS.get(word)
+
+
+#: Longer lines are no sentences, and no conditions in words: words of many kinds would be tried against them for long.
+_LONGEST = 500
 
 
 class Said(NamedTuple):
@@ -77,6 +81,8 @@ def _said(found: re.Match[str]) -> Said:
 def what_is_said(line: str) -> tuple[str, list[Said]]:
     """Return a line without what a sentence in it says, and that; a line of other words is as it was."""
     text = line.strip()
+    if len(text) > _LONGEST:
+        return line, []
     if found := _SENTENCE.fullmatch(text):
         return "", [_said(found)]
     if found := _IS_POSITIVE.fullmatch(text):
@@ -125,6 +131,8 @@ _INFINITE = re.compile(r"[-+]?\s*(?:oo|inf|infinity|∞)")
 
 def in_inequalities(line: str) -> str:
     """Return conditions as inequalities: -3 < h < 6 for h ∈ (-3, 6), a != 1, a != 2 for a ∉ {1, 2}, without words before."""
+    if len(line) > _LONGEST:
+        return line
     text = _OF_ANGLES.sub(r"span{\1}", line.replace("~=", "!=").replace("≠", "!="))
     if lost := _LOST.fullmatch(text.strip().rstrip(".")):
         parts = re.split(r"\s*(?:,|\bor\b|\boder\b|\band\b|\bund\b)\s*", lost[1])

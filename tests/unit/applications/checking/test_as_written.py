@@ -42,3 +42,8 @@ def test_what_is_right_is_read() -> None:
     right = [each for name in CORPUS for each in judged(name) if each[1] == "right"]
     assert len(right) > 300
     assert 100 * sum(found == "right" for *_, found in right) >= READ * len(right)
+
+
+@pytest.mark.parametrize("words", ["the ", "completely ", "eine verstärkung ", "a ∈ "])
+def test_long_lines_of_words_are_no_sentences(words: str) -> None:
+    assert verdict(Checked.of(CORPUS["observer"]["problem"]), 3_000 * words) == "unreadable"
