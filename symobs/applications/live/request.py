@@ -15,6 +15,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError, reason_of
 from symobs.problem import validate
 from symobs.problem.schema import kinds_of
+from symobs.problem.validation import gains_from
 from symobs.system.linearize import linearize
 from symobs.system.specification.pole_patterns import OTHERS
 from symobs.tasks.result import task_named
@@ -94,11 +95,11 @@ class Request:
 
     def problem(self) -> Problem:
         """Return the problem as it was given."""
-        return validate(put_in(self.data, {}), self.task)
+        return _validated(put_in(self.data, {}), self.task)
 
     def problem_there(self) -> Problem:
         """Return the problem with the values of `at` in the place of their symbols."""
-        return validate(put_in(self.data, self.at), self.task)
+        return _validated(put_in(self.data, self.at), self.task)
 
     @property
     def key(self) -> str:
@@ -109,6 +110,21 @@ class Request:
     def key_there(self) -> str:
         """The same with the values of `at`."""
         return json.dumps([put_in(self.data, self.at), self.task], sort_keys=True, ensure_ascii=False)
+
+
+def _validated(data: Mapping[str, Any], name: str | None) -> Problem:
+    """Return the problem of one task, after the earlier tasks of the file whose gains are those of it."""
+    several, found = data.get("tasks"), task_named(name) if name is not None else None
+    if found is None or not isinstance(several, list) or name not in several:
+        return validate(data, name)
+    specification = _table(data, "specification")
+    earlier = [str(each) for each in several[: several.index(name)]]
+    gains = gains_from(found, {*specification, *_table(specification, found.name)}, earlier)
+    if not gains:
+        return validate(data, name)
+    wanted = [*(earlier[place] for place in sorted({*gains.values()})), name]
+    own = {key: value for key, value in specification.items() if key in wanted or key not in several}
+    return validate({**data, "tasks": wanted, "specification": own})
 
 
 def parsed(body: bytes) -> Any:

@@ -469,6 +469,20 @@ def test_inequalities_are_among_the_answers() -> None:
     assert [card["latex"] for card in found["cards"] if card["name"].startswith("stable_if")] == ["0<k<6"]
 
 
+@pytest.mark.parametrize("task", ["lqr", "kalman", "compensator", "margins", "feedforward"])
+def test_a_task_of_a_file_has_the_gains_of_the_tasks_before_it(task: str) -> None:
+    """K = [1 √3] of the double integrator with unit weights, from s⁴ + s² + 1 = (s² + √3 s + 1)(s² − √3 s + 1) and P."""
+    problem = {
+        "tasks": ["lqr", "kalman", "compensator", "margins", "feedforward"],
+        "plant": {"A": "[0 1; 0 0]", "B": "[0; 1]", "C": "[1 0]"},
+        "specification": {"lqr": {"Q": "1", "R": "1"}, "kalman": {"W": "1", "V": "1"}},
+    }
+    found: Any = answer({"schema": "symobs-live/1", "id": 1, "want": "answer", "problem": problem, "task": task})
+    assert (found["status"], found["result"]["task"]) == ("done", task)
+    if task == "compensator":
+        assert found["result"]["K"] == [["1", "sqrt(3)"]]
+
+
 def test_the_start_names_tasks_and_examples() -> None:
     found = answer({"schema": "symobs-live/1", "want": "start"})
     assert len(json.dumps(found)) < 2**20
