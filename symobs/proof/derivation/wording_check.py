@@ -89,6 +89,7 @@ from symobs.proof.derivation.wording_of_pairs import (
     is_test,
     is_unobservable,
     misses,
+    moves_integrators,
     of_pair,
     repairs,
     says_rank,
@@ -136,6 +137,7 @@ _OF_SLOTS: dict[str, Callable[..., bool]] = {
 #: What must be so where a sentence stands, of its facts, its slots and the letters that the obligation names.
 _OF_STEP: dict[str, Callable[..., bool]] = {
     "observable": is_observable,
+    "moves_integrators": moves_integrators,
     "unobservable": is_unobservable,
     "unseen": are_unseen,
     "spans_unseen": lambda said, *names: are_unseen(said, *names, all_of_them=True),

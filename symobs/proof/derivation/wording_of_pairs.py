@@ -89,6 +89,22 @@ def is_observable(said: SentenceContext, row: str, of: str) -> bool:
     return verify(rank_is, here)[0] != "" and _is_everywhere(rank_is, here)
 
 
+def moves_integrators(said: SentenceContext) -> bool:
+    """Return whether the input moves plant and integrators of r − y, or moves the plant, which has no zero where they stand."""
+    if is_observable(said, "B_hatᵀ", "A_hatᵀ"):
+        return True
+    here = said.environment
+    A, B, C, whole, entering = (evaluate(Letter(x), here, Exact(here)) for x in ("A", "B", "C", "A_hat", "B_hat"))
+    (n, m), p = B.shape, C.shape[0]
+    D, z = here.values.get("D", Matrix.zeros(p, m)), whole[n, n]
+    extended = Matrix.block([[A, Matrix.zeros(n, p)], [-C, Matrix.identity(p) * z]]), Matrix.block([[B], [-D]])
+    system = Literal(Matrix.block([[A - Matrix.identity(n) * z, B], [C, D]]))
+    ranks = ((stack_of("Bᵀ", "Aᵀ", here), n), (system, n + p))
+    told = [Relation((Apply("rank", matrix), number_of(rank)), ("=",)) for matrix, rank in ranks]
+    is_seen = all(verify(each, here)[0] != "" and _is_everywhere(each, here) for each in told)
+    return is_seen and z in {Scalar.of(0), Scalar.of(1)} and (whole, entering) == extended
+
+
 def is_unobservable(said: SentenceContext, row: str, of: str) -> bool:
     """Return whether a vector other than 0 lies in the kernel of the test matrix."""
     here = said.environment

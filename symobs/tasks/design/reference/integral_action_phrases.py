@@ -40,8 +40,8 @@ QUESTIONS: dict[str, str] = {
 }
 
 DEMANDS: dict[str, str] = {
-    "integral_possible_origin": "observable B_hatᵀ A_hatᵀ, continuous_time",
-    "integral_possible_one": "observable B_hatᵀ A_hatᵀ, discrete_time",
+    "integral_possible_origin": "moves_integrators, continuous_time",
+    "integral_possible_one": "moves_integrators, discrete_time",
     "integral_blocked": "unobservable B_hatᵀ A_hatᵀ",
     "integral_uncontrollable": "says_unobservable Bᵀ Aᵀ",
     "integral_impossible": "fixes B_hatᵀ A_hatᵀ N_K X_K phi_c",
