@@ -272,7 +272,7 @@ class OutputMethods:
         long = {name: size for name, value in found.items() if (size := getattr(value, "size", 0)) > _TERMS_SHOWN}
         shown = [f"{name}={_in_short(value, long.get(name, 0))}" for name, value in found.items()]
         verdict = [] if long else [f"verdict={self.verdict!r}"]
-        return f"{self.task}({', '.join(shown + verdict)})"
+        return f"{type(self).__name__}({', '.join(shown + verdict)})"
 
 
 def _in_short(value: Any, terms: int) -> str:
