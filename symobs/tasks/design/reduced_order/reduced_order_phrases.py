@@ -46,7 +46,7 @@ PHRASES: dict[str, str] = {
 }
 
 QUESTIONS: dict[str, str] = {
-    "means reduced_order_observer": "They are the matrices of the state $z_o$ in its equation, of the input and of the output there, and of the estimate $x_hat = M_z [y; z_o]$, where the input does not act on the output.",
+    "means reduced_order_observer": "The estimate of the state is $x_hat = M_z [y; z_o]$, where the input does not act on the output.",
     "ask reduced_order_observer": "Design a reduced-order observer.",
     "ask reduced_order_observer poles": "Design a reduced-order observer with the poles {poles}.",
     "ask reduced_order_observer poles=1": "Design a reduced-order observer with the pole {poles}.",
