@@ -544,6 +544,7 @@ def lyapunov(
     plant: _Plant,
     *,
     Q: _Number | _Matrix | None = None,
+    P: _Number | _Matrix | None = None,
     method: str = "auto",
     floats: str | None = None,
 ) -> _LyapunovResult:

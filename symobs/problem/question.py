@@ -68,6 +68,7 @@ _WEIGHTS = {
     ("kalman", "W"): ("W_n", "order"),
     ("kalman", "V"): ("V_n", "outputs"),
     ("lyapunov", "Q"): ("Q_l", "order"),
+    ("lyapunov", "P"): ("P_l", "order"),
 }
 #: Kinds of keyword whose value is a word: the word chooses the sentence.
 _WORDS = {"Name", "Sign"}

@@ -34,6 +34,10 @@ def holds(result: Any, at: Setting) -> None:
     P = matrix_at(result.answer["P"], at.point)
     assert multiply(table, [[entry] for row in P for entry in row]) == right
     assert transposed(P) == P
+    if "Q" in result.answer:  # P was given, and what is told of definiteness is told of Q
+        positive = all(determinant([row[:k] for row in Q[:k]]) > 0 for k in range(1, len(Q) + 1))
+        assert result.fields["positive_definite"] in {"conditional", "yes" if positive else "no"}
+        return
     assert regular == (result.answer["N"] is None)
     if not regular:
         N = matrix_at(result.answer["N"], at.point)

@@ -21,7 +21,7 @@ from symobs.exact import (
 )
 from symobs.formula.tree import HoldsExactlyWhere
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import CertificateRejected, Undecided
+from symobs.ground.errors import CertificateRejected, InputError, Undecided
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.proof.derivation.facts import leading_minors
@@ -152,7 +152,12 @@ class LyapunovSolution(PutAgain):
     @property
     def verdict(self) -> str:
         """`no` where there is no solution or more than one."""
-        return "no" if self.answer["determinant"].is_zero else super().verdict
+        return "no" if self.is_singular else super().verdict
+
+    @property
+    def is_singular(self) -> bool:
+        """Whether there is no P or more than one."""
+        return bool(self.answer["determinant"].is_zero)
 
     @cached_property
     def leading(self) -> tuple[Scalar, ...]:
@@ -166,6 +171,13 @@ class LyapunovSolution(PutAgain):
         signs = self.plant.symbols.signs
         return all(sign_of(minor, signs) == "positive" for minor in leading_minors(self.weight))
 
+    @cached_property
+    def stability(self) -> StabilityVerdict:
+        """Whether A is asymptotically stable."""
+        plant = self.plant
+        chi = plant.matrices.A.characteristic_polynomial(plant.variable)
+        return stability(chi, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+
     @property
     def lowest_minor(self) -> int | None:
         """The place of a minor that is never positive, where there is one."""
@@ -174,16 +186,15 @@ class LyapunovSolution(PutAgain):
     @cached_property
     def definite(self) -> StabilityVerdict:
         """Whether P is positive definite: yes, no, or what must be positive for it to be."""
-        plant, signs = self.plant, self.plant.symbols.signs
+        signs = self.plant.symbols.signs
         if self.leading and self.has_definite_weight:
-            chi = plant.matrices.A.characteristic_polynomial(plant.variable)
-            return stability(chi, plant.variable, signs, discrete=plant.is_discrete)
+            return self.stability
         return _all_positive(self.leading, signs) if self.leading else StabilityVerdict("no")
 
     @property
     def existence(self) -> tuple[Scalar, ...]:
         """The determinant that vanishes where the solution is not unique."""
-        return () if self.answer["determinant"].is_zero else (self.answer["determinant"],)
+        return () if self.is_singular else (self.answer["determinant"],)
 
     @property
     def obstacle(self) -> Scalar | None:
@@ -197,6 +208,78 @@ class LyapunovSolution(PutAgain):
         found = {"P": P, "solvable": self.verdict, "positive_definite": definite.verdict if self.leading else None}
         found |= {"positive_if": definite.inequalities(signs) if self.leading else None, "minors": list(self.leading)}
         return found | {"determinant": self.answer["determinant"], "homogeneous": self.answer["N"]}
+
+
+@dataclass
+class LyapunovWeight(LyapunovSolution):
+    """Q = −(AᵀP + PA) of a given symmetric P, and whether it is positive definite."""
+
+    given: Matrix
+
+    inputs = ("given",)
+    answered_by = ("Q", "positive_definite")
+    only_value = ("Q", "positive_definite")
+    claimed = ()
+    leads = ("Q",)
+    letters = {"Q": "Q_l", "minors": "Delta"}
+    cards = ("Q",)
+
+    @classmethod
+    def of(cls, plant: StateSpace, P: Matrix, method_name: str) -> Self:
+        """Return the Q of a P."""
+        A = plant.matrices.A
+        left = A.T @ P @ A - P if plant.is_discrete else A.T @ P + P @ A
+        Q = modulo((-left).normal(), plant.ideal)
+        return cls(plant, method_name, {"Q": Q, "P": P}, Q, P)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield the equation, the symmetry of P, and the signs of the minors of Q."""
+        e = self.meanings()
+        yield holds(e, f"{self.left} = -Q")
+        yield holds(e, "P = P.T")
+        yield from self._about_minors(e)
+
+    @property
+    def named_data(self) -> Mapping[str, Any]:
+        """P."""
+        return {"P": self.given}
+
+    def consequences(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the minors of another symmetric Q, and whether it is positive definite."""
+        found = super().consequences({"P": given["Q"]})
+        return {name: found[name] for name in ("minors", "positive_definite") if name in found}
+
+    @property
+    def is_singular(self) -> bool:
+        """Never: there is one Q for every P."""
+        return False
+
+    @cached_property
+    def leading(self) -> tuple[Scalar, ...]:
+        """The leading principal minors of Q."""
+        return leading_minors(self.weight)
+
+    @cached_property
+    def definite(self) -> StabilityVerdict:
+        """Whether Q is positive definite: yes, no, or what must be positive for it to be."""
+        return _all_positive(self.leading, self.plant.symbols.signs)
+
+    @property
+    def existence(self) -> tuple[Scalar, ...]:
+        """Nothing: there is one Q for every P."""
+        return ()
+
+    @property
+    def obstacle(self) -> Scalar | None:
+        """Nothing: there is one Q for every P."""
+        return None
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """Q, P, and whether Q is positive definite, or exactly where."""
+        definite, signs = self.definite, self.plant.symbols.signs
+        found = {"Q": self.weight, "P": self.given, "positive_definite": definite.verdict}
+        return found | {"positive_if": definite.inequalities(signs), "minors": list(self.leading)}
 
 
 #: Signs of what is positive nowhere.
@@ -243,20 +326,34 @@ def by_entries(plant: StateSpace, Q: Matrix) -> LyapunovSolution:
     return LyapunovSolution.of(plant, Q, "entries")
 
 
+@method("lyapunov/evaluation", source="kalman1960a")
+def by_evaluation(plant: StateSpace, P: Matrix) -> LyapunovWeight:
+    """Evaluate the left side at a given P."""
+    return LyapunovWeight.of(plant, P, "evaluation")
+
+
 @task
-def lyapunov(plant: StateSpace, *, Q: Intensity = None, method: Name = "auto") -> Result:
+def lyapunov(plant: StateSpace, *, Q: Intensity = None, P: Intensity = None, method: Name = "auto") -> Result:
     """Solve Lyapunov's equation AᵀP + PA = −Q, in discrete time AᵀPA − P = −Q, for a symmetric P.
 
     plant    A with n states
     Q        n×n, symmetric; q stands for q I, and I where it is left out
+    P        n×n, symmetric, in the place of Q: the Q that belongs to it is found, and whether that is positive definite
     Returns P, solvable (yes, no, conditional: whether there is one and only one P; where there are several P is one of them),
     positive_definite (yes, no, conditional), positive_if (conditions for it), minors (the leading principal ones), determinant
     (0 where some λᵢ + λⱼ, λᵢ λⱼ − 1, is 0) and homogeneous (where P is not unique, what may be added to it).
-    Raises `InputError` where Q is not symmetric, `ShapeMismatch`; `Undecided` for too many states.
+    Of a given P these are Q, positive_definite, positive_if and minors of Q.
+    Raises `InputError` where Q or P is not symmetric, or both are given, `ShapeMismatch`; `Undecided` for too many states.
     Source: R. E. Kalman and J. E. Bertram (1960); P. Lancaster and M. Tismenetsky, The Theory of Matrices, ch. 12, 13.
     """
-    plant = plant.knowing(Q)
+    if Q is not None and P is not None:
+        message = "both Q and P are given, and each follows from the other"
+        raise InputError(message, where="specification.P", repair="keep one of them")
+    plant = plant.knowing(Q, P)
     order = plant.order
+    if P is not None:
+        plant, (tried,) = in_common_field(plant, read_symmetric(P, plant, "P", order))
+        return choose("lyapunov", method, "evaluation").solve(plant, tried).asked(method)
     weight = Matrix.identity(order) if Q is None else read_symmetric(Q, plant, "Q", order)
     if order > (MOST_WITH_PARAMETERS if plant.matrices.A.names else MOST_STATES):
         raise Undecided(f"lyapunov is undecided: {order} states are too many")
@@ -269,6 +366,32 @@ def lyapunov(plant: StateSpace, *, Q: Intensity = None, method: Name = "auto") -
 
 #: The left side is written out in the entries of P for plants of up to this order.
 _WRITTEN_OUT_UP_TO = 3
+
+
+@page_of(LyapunovWeight)
+def write_weight(page: Builder, result: LyapunovWeight) -> None:
+    """Write the page of the Q that belongs to a P."""
+    given(page)
+    with page.section("lyapunov_equation"):
+        time = "discrete" if page.plant.is_discrete else "continuous"
+        page.define("P_l", page.value(result.given), say=f"lyapunov_tried_{time}", closing=False)
+        _weigh(page, result)
+        page.steps += case_steps(page, result, _weigh_again)
+
+
+def _weigh_again(page: Builder, result: LyapunovWeight) -> None:
+    page.set("P_l", result.given)
+    _weigh(page, result)
+
+
+def _weigh(page: Builder, result: LyapunovWeight) -> None:
+    """Write Q, its minors, and what follows for it and for the stability of A."""
+    left = result.left.replace("P", "P_l")
+    page.define("Q_l", page(f"-({left})"), page.value(result.weight), say="lyapunov_weight", answer=True, closing=False)
+    _tell_definiteness(page, result, "Q_l")
+    if result.has_definite_weight:
+        page.set("chi", page.plant.matrices.A.characteristic_polynomial(page.plant.variable))
+        _tell_stability(page, result)
 
 
 @page_of(LyapunovSolution)
@@ -302,6 +425,8 @@ def _solve(page: Builder, result: LyapunovSolution) -> None:
         page.equal("N_l = #", page.line(f"{result.left} = 0", P="N_l"), say="lyapunov_added")
         return
     _tell_definiteness(page, result)
+    if result.has_definite_weight:
+        _tell_stability(page, result)
 
 
 def _tell_uniqueness(page: Builder, result: LyapunovSolution) -> None:
@@ -349,33 +474,37 @@ def _tell_refusal(page: Builder, result: LyapunovSolution) -> None:
     page.conclude(f"lyapunov_impossible_{time}", trace=page.value(trace(result.weight, result.answer["X"])))
 
 
-def _tell_definiteness(page: Builder, result: LyapunovSolution) -> None:
-    """Write the leading principal minors, and what follows for P and for the stability of A."""
-    signs, P, lowest = page.plant.symbols.signs, page["P_l"], result.lowest_minor
+def _tell_definiteness(page: Builder, result: LyapunovSolution, letter: str = "P_l") -> None:
+    """Write the leading principal minors of P, or of Q, and what follows for it."""
+    signs, P, lowest = page.plant.symbols.signs, page[letter], result.lowest_minor
+    of = "" if letter == "P_l" else "_weight"
     for k, minor in enumerate(result.leading, 1):
         page.set(f"Delta_{k}", minor)
     page.equal(
         *(relation(page[f"Delta_{k}"], determinant_form(page, m)) for k, m in enumerate(result.leading, 1)),
-        say="lyapunov_minors",
+        say=f"lyapunov{of}_minors",
     )
-    of_Q = result.has_definite_weight
+    of_Q = result.has_definite_weight and not of
     if lowest is not None:
-        page.conclude("lyapunov_not_definite", minor=relation(page[f"Delta_{lowest + 1}"], "<=", 0))
+        page.conclude(f"lyapunov{of}_not_definite", minor=relation(page[f"Delta_{lowest + 1}"], "<=", 0))
     elif all(sign_of(minor, signs) == "positive" for minor in result.leading):
-        page.conclude("lyapunov_definite", predicate("positive_definite", P))
+        page.conclude(f"lyapunov{of}_definite", predicate("positive_definite", P))
     elif not of_Q:
         where = tuple(relation(*as_inequality(value, signs)) for value in result.definite.positive)
-        page.conclude("lyapunov_definite_if", where=HoldsExactlyWhere(predicate("positive_definite", P), where))
-    if not of_Q:
-        return
+        page.conclude(f"lyapunov{of}_definite_if", where=HoldsExactlyWhere(predicate("positive_definite", P), where))
+
+
+def _tell_stability(page: Builder, result: LyapunovSolution) -> None:
+    """Write what a positive definite Q says of the stability of A."""
+    signs, stable = page.plant.symbols.signs, result.stability
     positive, chi = predicate("positive_definite", page["Q_l"]), page["chi"]
-    if result.definite.verdict == "conditional":
-        where = tuple(relation(*as_inequality(value, signs)) for value in result.definite.positive)
+    if stable.verdict == "conditional":
+        where = tuple(relation(*as_inequality(value, signs)) for value in stable.positive)
         page.conclude("lyapunov_stable_if", positive, where=HoldsExactlyWhere(predicate("stable", chi), where))
         return
-    stable = result.definite.verdict == "yes"
+    is_stable = stable.verdict == "yes"
     page.conclude(
-        "lyapunov_stable" if stable else "lyapunov_unstable",
+        "lyapunov_stable" if is_stable else "lyapunov_unstable",
         positive,
-        predicate("stable" if stable else "unstable", chi),
+        predicate("stable" if is_stable else "unstable", chi),
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 import symobs
@@ -33,3 +34,32 @@ def test_a_determinant_keeps_its_factors_beside_cosines() -> None:
 def test_a_right_hand_side_without_symmetry_is_refused() -> None:
     with pytest.raises(InputError, match=r"not symmetric: its entries \(1, 2\) and \(2, 1\) differ"):
         symobs.lyapunov(symobs.StateSpace("[0 1; -1 -1]"), Q="[1 1; 0 1]")
+
+
+def test_a_given_p_has_its_q_as_numpy_finds_it() -> None:
+    """−(AᵀP + PA), in discrete time P − AᵀPA, and its eigenvalues, which say whether it is positive definite."""
+    chance = np.random.default_rng(5)
+    for dt in (0, 1):
+        for _ in range(12):
+            A, half = (chance.integers(-4, 5, (3, 3)) for _ in range(2))
+            P = half + half.T
+            result: Any = symobs.lyapunov(symobs.StateSpace(A.tolist(), dt=dt), P=P.tolist())
+            Q = P - A.T @ P @ A if dt else -(A.T @ P + P @ A)
+            assert np.array(result.Q.tolist(), dtype=int).tolist() == Q.tolist()
+            assert (result.positive_definite == "yes") == bool(np.linalg.eigvalsh(Q)[0] > 1e-9)
+            assert result.verdict == "yes"
+            assert "Q" in result.to("text")
+
+
+def test_a_given_p_says_what_its_q_means_for_the_plant() -> None:
+    """P = [5 1; 1 1] has Q = 4 I with A = [0 1; −2 −3]; [2 1; 1 2] has Q = [2k 2k−1; 2k−1 2] with [0 1; −k −1]."""
+    said = " ".join(symobs.lyapunov(symobs.StateSpace("[0 1; -2 -3]"), P="[5 1; 1 1]").to("text").split())
+    assert "P is positive definite if and only if A is asymptotically stable" in said
+    found: Any = symobs.lyapunov(symobs.StateSpace("[0 1; -k -1]"), P="[2 1; 1 2]")
+    assert (found.positive_definite, [str(each) for each in found.positive_if]) == (
+        "conditional",
+        ["-4*k**2 + 8*k - 1 > 0"],
+    )
+    assert found.at(k=1).positive_definite == "yes"
+    with pytest.raises(InputError, match="both Q and P are given"):
+        symobs.lyapunov(symobs.StateSpace("[0 1; -2 -3]"), Q=1, P=1)
