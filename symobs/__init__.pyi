@@ -99,11 +99,12 @@ class _CanonicalFormResult(_CanonicalForm):
 def canonical_form(
     plant: _Plant,
     *,
-    kind: str = "controllable",
+    kind: str | None = None,
+    T: _Matrix | None = None,
     method: str = "auto",
     floats: str | None = None,
 ) -> _CanonicalFormResult:
-    """Return the controllable, observable or modal canonical form, x̄ = T x."""
+    """Return the controllable, observable or modal canonical form, x̄ = T x, or the plant in given coordinates."""
 
 class _CharacteristicPolynomialResult(_CharacteristicPolynomial):
     """What `characteristic_polynomial` returns."""

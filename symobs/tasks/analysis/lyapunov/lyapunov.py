@@ -41,7 +41,7 @@ from symobs.tasks.analysis.time_response.horizons import (
 from symobs.tasks.result import Result, choose, holds, method, page_of, task
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from symobs.formula.tree import Environment
     from symobs.system import StateSpace
@@ -63,8 +63,13 @@ class LyapunovSolution(PutAgain):
     only_value = ("P", "positive_definite")
     claimed = ("P",)
     leads = ("P",)
-    letters = {"P": "P_l", "minors": "Delta"}
+    letters = {"P": "P_l", "Q": "Q_l", "minors": "Delta"}
     cards = ("P",)
+
+    @classmethod
+    def fields_asked(cls, given: Collection[str]) -> tuple[str, ...]:
+        """Return what is asked for: P, where that is given Q, and whether it is positive definite."""
+        return ("Q", "positive_definite") if "P" in given else super().fields_asked(given)
 
     @classmethod
     def of(cls, plant: StateSpace, Q: Matrix, method_name: str) -> Self:
@@ -221,7 +226,6 @@ class LyapunovWeight(LyapunovSolution):
     only_value = ("Q", "positive_definite")
     claimed = ()
     leads = ("Q",)
-    letters = {"Q": "Q_l", "minors": "Delta"}
     cards = ("Q",)
 
     @classmethod

@@ -31,6 +31,7 @@ from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.system.conditions import Condition, joined, nonzero, vanishing_factors
+from symobs.system.specification import in_common_field, read_gain
 from symobs.tasks.analysis.modes.modes import TESTS
 from symobs.tasks.analysis.page_parts import case_steps, formula_of_factored, given
 from symobs.tasks.analysis.rank.observability import power_rows
@@ -44,12 +45,14 @@ if TYPE_CHECKING:
 
     from symobs.proof.certificate.claims import Certificate
     from symobs.system import StateSpace
-    from symobs.system.specification import Name
+    from symobs.system.specification import MatrixText, Name
     from symobs.tasks.analysis.rank.observability import RankResult
 
 
 #: Kind of the form, and the rank test that decides whether it exists.
 KINDS: dict[str, str | None] = {"controllable": "controllability", "observable": "observability", "modal": None}
+#: The kind of the form in coordinates that are given.
+GIVEN = "given"
 
 
 @dataclass
@@ -77,7 +80,7 @@ class CanonicalForm(Result):
     @cached_property
     def test(self) -> RankResult | None:
         """The rank test that decides, None for the modal form."""
-        name = KINDS[self.kind]
+        name = KINDS.get(self.kind)
         return None if name is None else TESTS[name].of(self.plant, "rank")
 
     @property
@@ -131,7 +134,7 @@ class CanonicalForm(Result):
         elif self.kind == "observable":
             yield equality(A_bar, wanted.T, e, "A_bar has the coefficients of chi in its last column")
             yield holds(e, "C_bar = {T}", "C_bar is the last unit row", T=last.T)
-        else:
+        elif self.kind == "modal":
             blocks = modal_matrix(self.answer["blocks"], self.plant.variable)
             yield equality(A_bar, blocks, e, "A_bar consists of the blocks of the factors of chi")
             product = Scalar.of(1)
@@ -166,6 +169,8 @@ class CanonicalForm(Result):
     @cached_property
     def case_tree(self) -> tuple[Case, ...]:
         """The form where the generic coordinates are dependent."""
+        if self.kind == GIVEN:  # where T has no inverse it is no change of coordinates
+            return ()
 
         def anew(plant: StateSpace, _: dict[str, Scalar]) -> CanonicalForm:
             return solve(plant, self.kind, self.method)
@@ -183,6 +188,10 @@ class CanonicalForm(Result):
     def write(self, page: Builder) -> None:
         """Write χ, the basis, and the plant in it."""
         given(page)
+        if self.kind == GIVEN:
+            with page.section("coordinates_changed"):
+                self.write_form(page)
+            return
         with page.section("canonical_form"):
             chi = factored(self.answer["polynomial"], self.plant.variable)
             members = [page["det(pencil(A))"]]
@@ -204,6 +213,11 @@ class CanonicalForm(Result):
         elif self.kind == "controllable":
             page.define("S", page("Ctr {hankel}", hankel=self._hankel), say="last_row_controllable")
             page.define("T", "S^-1", answer=True)
+        elif self.kind == GIVEN:
+            page.define("T", page.value(self.answer["T"]), say="coordinates_given", closing=False)
+            page.define("S", "T^-1", say="coordinates_back")
+            if conditions := [c.expression for c in self.holds_where if c.kind == "existence"]:
+                page.assume("coordinates_provided", *conditions)
         else:
             page.define("S", page.value(self.answer["inverse"]), say="modal_basis")
             conditions = [c.expression for c in self.holds_where if c.kind == "existence"]
@@ -234,6 +248,14 @@ class CanonicalForm(Result):
         return self.answer["T"] is not None
 
 
+@dataclass
+class InGivenCoordinates(CanonicalForm):
+    """The plant in given coordinates, whose matrices are right in no others."""
+
+    in_coordinates = ()
+    only_value = ("A", "B", "C")
+
+
 def solve(plant: StateSpace, kind: str, method_name: str) -> CanonicalForm:
     """Return the canonical form of a plant."""
     m, variable = plant.matrices, plant.variable
@@ -252,11 +274,17 @@ def solve(plant: StateSpace, kind: str, method_name: str) -> CanonicalForm:
         T = S.inverse().normal()
         if kind == "observable":
             T, S = S.T, T.T
-        answer |= {"T": T, "inverse": S, "A": (T @ m.A @ S).normal()}
-        answer |= {"B": (T @ m.B).normal()} if m.has_input else {}
-        answer |= {"C": (m.C @ S).normal()} if m.has_output else {}
-        answer |= {"D": m.D} if m.has_input and m.has_output else {}
+        answer |= _moved(plant, T, S)
     return CanonicalForm(plant, method_name, {**answer, "polynomial": chi, "blocks": blocks}, kind)
+
+
+def _moved(plant: StateSpace, T: Matrix, S: Matrix) -> dict[str, Matrix]:
+    """Return T, S = T⁻¹ and the matrices of the plant in the coordinates T x."""
+    m = plant.matrices
+    found = {"T": T, "inverse": S, "A": (T @ m.A @ S).normal()}
+    found |= {"B": (T @ m.B).normal()} if m.has_input else {}
+    found |= {"C": (m.C @ S).normal()} if m.has_output else {}
+    return found | ({"D": m.D} if m.has_input and m.has_output else {})
 
 
 @method("canonical_form/basis", source="bass1965; kailath1980, ch. 2")
@@ -265,16 +293,37 @@ def canonical_basis(plant: StateSpace, kind: str) -> CanonicalForm:
     return solve(plant, kind, "basis")
 
 
+@method("canonical_form/coordinates", source="kailath1980, ch. 2")
+def in_coordinates(plant: StateSpace, T: Matrix) -> InGivenCoordinates:
+    """The plant in the coordinates T x; raises `InputError` where T has no inverse."""
+    if T.determinant().is_zero:
+        message = "the matrix has no inverse, so that T x are no coordinates of the state"
+        raise InputError(message, where="specification.T", repair="give rows that are independent")
+    chi = plant.matrices.A.characteristic_polynomial(plant.variable)
+    answer = {**dict.fromkeys("ABCD"), **_moved(plant, T, T.inverse().normal()), "polynomial": chi, "blocks": ()}
+    return InGivenCoordinates(plant, "coordinates", answer, GIVEN)
+
+
 @task
-def canonical_form(plant: StateSpace, *, kind: Name = "controllable", method: Name = "auto") -> Result:
-    """Return the controllable, observable or modal canonical form, x̄ = T x.
+def canonical_form(plant: StateSpace, *, kind: Name = None, T: MatrixText = None, method: Name = "auto") -> Result:
+    """Return the controllable, observable or modal canonical form, x̄ = T x, or the plant in given coordinates.
 
     plant    n states; one input for "controllable", one output for "observable"; only A for "modal"
     kind     controllable: ones above the diagonal, −aₙ … −a₁ in the last row, B̄ = eₙ; observable: its transpose, C̄ = eₙᵀ;
-             modal: block diagonal and real, a block for each elementary divisor of A over Q(parameters)
+             modal: block diagonal and real, a block for each elementary divisor of A over Q(parameters);
+             controllable where neither kind nor T is given
+    T        n×n with an inverse, in the place of a kind: the plant in the coordinates T x
     Returns T, A, B, C, D, polynomial.  Raises `InputError` where a matrix is missing or there are several inputs (outputs).
     Source: T. Kailath, Linear Systems, ch. 2.
     """
+    if T is not None:
+        if kind is not None:
+            message = "both T and kind are given, and each of them says which coordinates"
+            raise InputError(message, where="specification.T", repair="keep one of them")
+        plant = plant.knowing(T)
+        plant, (given_T,) = in_common_field(plant, read_gain(T, plant, "T", (plant.order, plant.order)))
+        return choose("canonical_form", method, "coordinates").solve(plant, given_T)
+    kind = kind or "controllable"
     if kind not in KINDS:
         message = f"{str(kind)[:40]!r} is not a canonical form"
         raise InputError(message, where="specification.kind", repair=f"write one of {', '.join(KINDS)}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "decomposition": "Kalman decomposition.",
     "canonical_form": "Canonical form.",
+    "coordinates_changed": "Change of coordinates.",
     "reached_and_hidden": "The controllable subspace is the range of $Ctr$, and the unobservable subspace is the kernel of $O$:",
     "basis_blocks": "The columns of $S$ form a basis adapted to the decomposition, with blocks of dimensions {sizes}, in this order: controllable and observable; controllable and unobservable; uncontrollable and observable; uncontrollable and unobservable.",
     "reached_alone": "The controllable subspace is the range of $Ctr$:",
@@ -25,6 +26,9 @@ PHRASES: dict[str, str] = {
     "modal_basis": "The columns of $S$ are bases of the invariant subspaces belonging to the factors: eigenvectors for rational roots, chains of generalised eigenvectors for defective ones, and $v$ with its images under $A$ for a factor without rational roots.",
     "canonical_impossible_controllable": "Only a controllable pair has a controllable canonical form.",
     "canonical_impossible_observable": "Only an observable pair has an observable canonical form.",
+    "coordinates_given": "The new state is $T x$ with",
+    "coordinates_back": "The old one is its product with",
+    "coordinates_provided": "What follows holds for {condition}, where $T$ has an inverse.",
     "distinct_provided": "For generic parameter values these vectors are linearly independent. What follows holds for {condition}.",
     "structure_provided": "These are the dimensions for generic parameter values. In what follows we assume {condition}.",
 }
@@ -32,6 +36,7 @@ PHRASES: dict[str, str] = {
 QUESTIONS: dict[str, str] = {
     "means canonical_form": "The new state is $T x$.",
     "ask canonical_form": "Transform the plant to canonical form.",
+    "ask canonical_form T": "Transform the plant to the coordinates $T x$.",
     "ask canonical_form kind=controllable": "Transform the plant to controllable canonical form.",
     "ask canonical_form kind=observable": "Transform the plant to observable canonical form.",
     "ask canonical_form kind=modal": "Transform the plant to real modal form.",
