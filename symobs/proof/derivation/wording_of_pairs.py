@@ -96,7 +96,7 @@ def moves_integrators(said: SentenceContext) -> bool:
     here = said.environment
     A, B, C, whole, entering = (evaluate(Letter(x), here, Exact(here)) for x in ("A", "B", "C", "A_hat", "B_hat"))
     (n, m), p = B.shape, C.shape[0]
-    D, z = here.values.get("D", Matrix.zeros(p, m)), whole[n, n]
+    z, D = whole[n, n], evaluate(Letter("D"), here, Exact(here)) if "D" in here.values else Matrix.zeros(p, m)
     extended = Matrix.block([[A, Matrix.zeros(n, p)], [-C, Matrix.identity(p) * z]]), Matrix.block([[B], [-D]])
     system = Literal(Matrix.block([[A - Matrix.identity(n) * z, B], [C, D]]))
     ranks = ((stack_of("Bᵀ", "Aᵀ", here), n), (system, n + p))
