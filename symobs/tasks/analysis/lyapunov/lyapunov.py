@@ -61,7 +61,7 @@ class LyapunovSolution(PutAgain):
     task: ClassVar[str] = "lyapunov"
     answered_by = ("P", "positive_definite")
     only_value = ("P", "positive_definite")
-    claimed = ("P",)
+    claimed: ClassVar[tuple[str, ...]] = ("P",)
     leads = ("P",)
     letters = {"P": "P_l", "Q": "Q_l", "minors": "Delta"}
     cards = ("P",)

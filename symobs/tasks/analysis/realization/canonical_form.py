@@ -67,7 +67,7 @@ class CanonicalForm(Result):
 
     task: ClassVar[str] = "canonical_form"
     answered_by = ("T", "A", "B", "C")
-    in_coordinates = ("T", "A", "B", "C")
+    in_coordinates: ClassVar[tuple[str, ...]] = ("T", "A", "B", "C")
     letters = {
         "T": "T",
         "A": "A_bar",
@@ -305,7 +305,9 @@ def in_coordinates(plant: StateSpace, T: Matrix) -> InGivenCoordinates:
 
 
 @task
-def canonical_form(plant: StateSpace, *, kind: Name = None, T: MatrixText = None, method: Name = "auto") -> Result:
+def canonical_form(
+    plant: StateSpace, *, kind: Name | None = None, T: MatrixText = None, method: Name = "auto"
+) -> Result:
     """Return the controllable, observable or modal canonical form, x̄ = T x, or the plant in given coordinates.
 
     plant    n states; one input for "controllable", one output for "observable"; only A for "modal"
