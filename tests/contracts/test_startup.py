@@ -86,7 +86,8 @@ for file in {[str(path) for path in EXAMPLES if path.stem != "cart_pole"]!r}:
         assert end.code == 0, file
 print(*sys.modules, sep="\\n", file=sys.stderr)
 """
-    assert imported(several) & HEAVY == set()
+    # NumPy is for the search of a small gain of several inputs or outputs
+    assert imported(several) & HEAVY <= {"numpy"}
 
 
 def test_the_version_needs_neither_kernel_nor_tasks() -> None:

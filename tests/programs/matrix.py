@@ -168,7 +168,8 @@ def own_answer(sample: Sample) -> str:
         is_of_a_basis = (
             name in sample.result.in_coordinates
         )  # another entry may be that of another basis, zeros are not
-        other = re.sub(r"[^\s;\[\]]+", "0", str(value)) if is_of_a_basis else _other(value)
+        zeros = re.sub(r"[^\s;\[\]]+", "0", str(value))
+        other = zeros if is_of_a_basis and zeros != value else _other(value)
         if sample.checked.report({"answer": {**answers, name: other}}).verdict == "right":
             return f"another {name} is right"
     return ""
@@ -404,7 +405,7 @@ def cell(task: str, door: str) -> str:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SymobsWarning)
             try:
-                way = symobs.bounded(partial(DOORS[door], sample), timeout=30)
+                way = symobs.bounded(partial(DOORS[door], sample), timeout=600)
             except SymobsError as error:
                 way = f"{type(error).__name__}: {error}"
             except Exception as error:  # noqa: BLE001 - it is what is looked for

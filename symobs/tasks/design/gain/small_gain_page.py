@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 
     from symobs.tasks.design.gain.gain_design import GainDesign, PlacementProblem
 
-#: To so many digits it is said how large the simple gain is.
-_DIGITS = 2
-
 
 def small_gain_terms(
     page: Builder, design: GainDesign, side: PlacementProblem, A: Term, moved: Term
@@ -131,6 +128,5 @@ def _largest(gain: Matrix) -> Fraction:
 
 
 def _rounded_down(number: Fraction) -> int:
-    """Return an integer with few digits that is not larger."""
-    unit: int = 10 ** max(len(str(floor(number))) - _DIGITS, 0)
-    return floor(number / unit) * unit
+    """Return the largest integer that is not larger: one more would be false."""
+    return floor(number)

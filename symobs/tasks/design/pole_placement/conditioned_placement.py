@@ -11,16 +11,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
-import numpy as np
+from symobs.ground.later import Later
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
     from numpy.typing import NDArray
 
     Reals: TypeAlias = NDArray[np.floating[Any]]
     #: Real for a real pole.
     Vectors: TypeAlias = NDArray[np.inexact[Any]]
+else:
+    np = Later("numpy")
 
 #: From so many bases the vectors are improved, each so often at most: |det X| may have several maxima.
 STARTS, SWEEPS = 6, 60

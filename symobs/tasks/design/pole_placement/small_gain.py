@@ -15,9 +15,8 @@ from itertools import islice
 from math import floor, log10
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from symobs.exact import Matrix, Scalar, factored, reduced_echelon
+from symobs.ground.later import Later
 from symobs.tasks.design.pole_placement.brunovsky_chains import cost
 from symobs.tasks.design.pole_placement.conditioned_placement import best_conditioned, condition_of
 from symobs.tasks.design.pole_placement.row_reduction import block_of, null_matrix, null_vector
@@ -26,9 +25,13 @@ from symobs.tasks.design.pole_placement.single_output import ObserverPair
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    import numpy as np
+
     from symobs.system.specification import DesiredPolynomial
     from symobs.tasks.design.pole_placement.conditioned_placement import Placement, Reals
     from symobs.tasks.design.pole_placement.multiple_outputs import MultiOutputPair
+else:
+    np = Later("numpy")
 
 #: A gain is small where its largest entry is at most so many times that of the best conditioned placement.
 SMALL = 1.5
