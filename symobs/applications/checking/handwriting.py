@@ -522,6 +522,7 @@ def plain_line(line: str) -> str:
 
 
 _PENCIL = re.compile(r"(?:det\(|\|)(?:[szp]|lam(?:bda)?)(?:I|E|1)-A(?:\)|\|)")
+_LOOP = re.compile(r"(?:det\(|\|)(?:[szp]|lam(?:bda)?)(?:I|E|1)-\(?A[-+][A-Z]{2}\)?(?:\)|\|)")
 _POLYNOMIAL = re.compile(r"chi(?:_?A)?|phi|[pP]|Delta")
 _O = r"(?:[OQM](?:_?[obO\d])?|Obs?)"
 _CTR = r"(?:[QSMC](?:_?[csrBS\d])?|Ctr|Co|\[B,?AB.*\])"
@@ -545,10 +546,11 @@ _CALLED: dict[str, re.Pattern[str]] = {
 
 
 def squashed(left: str) -> str:
-    """Return the left side of a relation without what is written in several ways: blanks, stars, the argument."""
+    """Return the left side of a relation without what is written in several ways: blanks, stars, argument, brackets."""
     spelt = "".join(spellings(c)[0] if c in GREEK_LETTERS.values() else c for c in left)
     text = re.sub(r"[\s*·]", "", spelt)
-    return re.sub(r"\(([szpt]|lam(bda)?)\)", "", text)
+    text = re.sub(r"\(([szpt]|lam(bda)?)\)", "", text)
+    return re.sub(r"_[({]([^(){}]*)[)}]", r"_\1", text)  # chi_(A-BK), chi_{A-BK}
 
 
 def letters_of(view: ResultInConvention, field: str) -> set[str]:
@@ -577,7 +579,8 @@ def fields_of(asked: Sequence[tuple[ResultInConvention, str]], values: Mapping[s
         letters, part = letters_of(view, field) if owner == field else set(), (view.task, field)
         pattern = _CALLED.get(f"{view.task}.{field}", _CALLED.get(field))
         by_letter = [values[key] for key, name in keys.items() if name in letters]
-        by_pencil = [values[key] for key, name in keys.items() if "chi" in letters and _PENCIL.fullmatch(name)]
+        pencil = _PENCIL if "chi" in letters else _LOOP if {"chi_K", "chi_L"} & letters else None
+        by_pencil = [values[key] for key, name in keys.items() if pencil and pencil.fullmatch(name)]
         others = [values[key] for key, name in keys.items() if name not in own and pattern and pattern.fullmatch(name)]
         if by_letter or by_pencil:
             found[part] = (by_letter or by_pencil)[-1]

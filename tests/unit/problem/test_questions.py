@@ -89,3 +89,12 @@ def test_a_specification_that_cannot_be_read_is_an_error() -> None:
 @tabled
 def test_integral_action_asks_for_a_pole_of_each_integrator_too(poles: str, polynomial: str) -> None:
     assert f"the characteristic polynomial {polynomial}." in asked(f"poles = {{ {poles} }}", "integral_action")
+
+
+@pytest.mark.parametrize(
+    "letter", ["χ_(A-LC)(s)", "\\chi_{A-LC}(s)", "det(sI - A + L C)", "det(sI - (A - LC))", "chi_L(s)", "p(s)"]
+)
+def test_the_polynomial_of_a_given_gain_is_read_under_its_letter(letter: str) -> None:
+    problem = 'task = "observer"\n[plant]\nA = "[0 1; 0 -1]"\nC = "[1 0]"\n[specification]\nL = "[19; 81]"\n'
+    assert check(problem, f"{letter} = s^2 + 20 s + 100\n").verdict == "right"
+    assert check(problem, f"{letter} = s^2 + 21 s + 100\n").verdict == "wrong"
