@@ -43,7 +43,10 @@ QUANTITIES |= {name: {"radius": "3"} for name in ("pole_advice", "pole_advice/bu
 
 
 #: Keywords that are not asked for together with the others.
-UNASKED = {"margins": {"control_poles", "control_polynomial", "observer_poles", "observer_polynomial"}}
+UNASKED = {
+    "margins": {"control_poles", "control_polynomial", "observer_poles", "observer_polynomial"},
+    "lyapunov": {"P"},
+}
 
 
 def fewer(asked: str, keyword: str) -> int:

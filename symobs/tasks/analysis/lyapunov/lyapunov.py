@@ -330,12 +330,6 @@ def by_entries(plant: StateSpace, Q: Matrix) -> LyapunovSolution:
     return LyapunovSolution.of(plant, Q, "entries")
 
 
-@method("lyapunov/evaluation", source="kalman1960a")
-def by_evaluation(plant: StateSpace, P: Matrix) -> LyapunovWeight:
-    """Evaluate the left side at a given P."""
-    return LyapunovWeight.of(plant, P, "evaluation")
-
-
 @task
 def lyapunov(plant: StateSpace, *, Q: Intensity = None, P: Intensity = None, method: Name = "auto") -> Result:
     """Solve Lyapunov's equation AᵀP + PA = −Q, in discrete time AᵀPA − P = −Q, for a symmetric P.
@@ -357,7 +351,7 @@ def lyapunov(plant: StateSpace, *, Q: Intensity = None, P: Intensity = None, met
     order = plant.order
     if P is not None:
         plant, (tried,) = in_common_field(plant, read_symmetric(P, plant, "P", order))
-        return choose("lyapunov", method, "evaluation").solve(plant, tried).asked(method)
+        return LyapunovWeight.of(plant, tried, choose("lyapunov", method, "entries").name).asked(method)
     weight = Matrix.identity(order) if Q is None else read_symmetric(Q, plant, "Q", order)
     if order > (MOST_WITH_PARAMETERS if plant.matrices.A.names else MOST_STATES):
         raise Undecided(f"lyapunov is undecided: {order} states are too many")

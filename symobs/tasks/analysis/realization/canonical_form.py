@@ -293,15 +293,14 @@ def canonical_basis(plant: StateSpace, kind: str) -> CanonicalForm:
     return solve(plant, kind, "basis")
 
 
-@method("canonical_form/coordinates", source="kailath1980, ch. 2")
 def in_coordinates(plant: StateSpace, T: Matrix) -> InGivenCoordinates:
-    """The plant in the coordinates T x; raises `InputError` where T has no inverse."""
+    """Return the plant in the coordinates T x; raises `InputError` where T has no inverse."""
     if T.determinant().is_zero:
         message = "the matrix has no inverse, so that T x are no coordinates of the state"
         raise InputError(message, where="specification.T", repair="give rows that are independent")
     chi = plant.matrices.A.characteristic_polynomial(plant.variable)
     answer = {**dict.fromkeys("ABCD"), **_moved(plant, T, T.inverse().normal()), "polynomial": chi, "blocks": ()}
-    return InGivenCoordinates(plant, "coordinates", answer, GIVEN)
+    return InGivenCoordinates(plant, "basis", answer, GIVEN)
 
 
 @task
@@ -324,7 +323,8 @@ def canonical_form(
             raise InputError(message, where="specification.T", repair="keep one of them")
         plant = plant.knowing(T)
         plant, (given_T,) = in_common_field(plant, read_gain(T, plant, "T", (plant.order, plant.order)))
-        return choose("canonical_form", method, "coordinates").solve(plant, given_T)
+        choose("canonical_form", method, "basis")
+        return in_coordinates(plant, given_T)
     kind = kind or "controllable"
     if kind not in KINDS:
         message = f"{str(kind)[:40]!r} is not a canonical form"
