@@ -8,6 +8,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from symobs.applications.grader.claims import WORDS as VERDICTS
+
 # -- sentences ---------------------------------------------------------------------------------------------------------
 
 
@@ -39,18 +41,6 @@ _IS_POSITIVE = re.compile(r"(?P<value>[A-Z]\s*=\s*[^<>=]*[\])]|[A-Z])\s*(?:>|≻
 _COMPARED = re.compile(
     r"(?!.*\b(?:where|for|if|für|falls|wenn)\b)((?:det|rank)\b[^=<>!]*=[^=<>!]*?)\s*(?:!=|≠|<=?|>=?)\s*-?\w+"
 )
-
-
-#: What a verdict may be called.
-VERDICTS = {
-    "yes": "yes",
-    "true": "yes",
-    "ja": "yes",
-    "no": "no",
-    "false": "no",
-    "nein": "no",
-    "conditional": "conditional",
-}
 
 
 def verdict_of(text: str, *asked: str) -> str | None:
