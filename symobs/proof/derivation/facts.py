@@ -242,7 +242,7 @@ def on_stratum(when: Relation | Conjunction, substitution: dict[str, Scalar], en
     positive = _known_there(environment.positive, substitution)
     relations = tuple(value.numerator for value in _known_there(environment.relations, substitution) if value)
     domain = vanishing_factors(_known_there(environment.domain, substitution), environment.signs)
-    named, vanishing = _in_common_base(named, replaced.values(), substitution)
+    named, vanishing = _in_common_base(named, replaced.values())
     moved = {name: value for name, value in named.items() if function_named(name) is not None}
     relations = tuple(value.substitute(moved).numerator for value in relations) if moved else relations
     inside = replace(
@@ -275,15 +275,15 @@ def _with_meaning(inside: Environment) -> Environment:
 
 
 def _in_common_base(
-    named: Mapping[str, Scalar], values: Iterable[Scalar | Matrix], substitution: Mapping[str, Scalar]
+    named: Mapping[str, Scalar], values: Iterable[Scalar | Matrix]
 ) -> tuple[dict[str, Scalar], tuple[Scalar, ...]]:
     """Return what generators stand for on a stratum, and what vanishes there, in functions that are independent there.
 
-    e^{at/(a+1)} and e^{t/(a+1)} are powers of one exponential where a is a number.  Raises `NotWritten` where a common base
-    would have too high a degree.
+    e^{at/(a+1)} and e^{t/(a+1)} are powers of one exponential where a is a number.  Functions of symbols that stand for
+    others there are none of the base.  Raises `NotWritten` where a common base would have too high a degree.
     """
     functions = {name: f.value for name in named if (f := function_named(name)) is not None}
-    kept = {name: value for name, value in functions.items() if symbols_named(name).isdisjoint(substitution)}
+    kept = {name: value for name, value in functions.items() if symbols_named(name).isdisjoint(named)}
     meanings, vanishing = identities([*kept.values(), *named.values(), *values])
     return {n: value.substitute(meanings) for n, value in named.items() if n not in kept} | meanings, vanishing
 
