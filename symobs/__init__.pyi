@@ -829,6 +829,7 @@ def response(
     initial: _Matrix | None = None,
     input: _Number | _Matrix | None = None,
     impulse: _Matrix | None = None,
+    at_time: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
 ) -> _ResponseResult:

@@ -33,7 +33,7 @@ MOST_STATES, MOST_WITH_PARAMETERS = 12, 4
 
 def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any:
     """Return `inf`, or the horizon as a scalar: T where none is given.  Raises `InputError`."""
-    where, called = f"specification.{name}", name.replace("_", " ")
+    where, called = f"specification.{name}", "instant" if name == "at_time" else name.replace("_", " ")
     if str(value).strip() in {"inf", "oo", "infinity", "∞"}:  # SymPy's oo too
         return INFINITE
     if value is None:

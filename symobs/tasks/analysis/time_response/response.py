@@ -9,7 +9,7 @@ from symobs.exact.core.generators import function_named, functions_in, symbols_i
 from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.system.specification import parse_in_steps, read_gain
-from symobs.tasks.analysis.time_response.horizons import read_functions
+from symobs.tasks.analysis.time_response.horizons import INFINITE, read_functions, read_horizon
 from symobs.tasks.analysis.time_response.initial_state import MOST_SAMPLES
 from symobs.tasks.analysis.time_response.matrix_exponential import require_continuous, require_no_instant
 from symobs.tasks.analysis.time_response.response_in_steps import ResponseInSteps
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from symobs.system import StateSpace
-    from symobs.system.specification import MatrixText, Name, TimeFunctions
+    from symobs.system.specification import MatrixText, Name, Quantity, TimeFunctions
 
 
 @method("response/superposition", source="kailath1980, ch. 2; ogata2010, ch. 9")
@@ -36,6 +36,7 @@ def response(
     initial: MatrixText = None,
     input: TimeFunctions = None,  # noqa: A002 - the specification's word
     impulse: MatrixText = None,
+    at_time: Quantity = None,
     method: Name = "auto",
 ) -> Result:
     """Return the response x(t) = e^{At} x₀ + ∫₀ᵗ e^{A(t−s)} B u(s) ds and y = C x + D u to an initial state and an input.
@@ -46,21 +47,30 @@ def response(
              a step and t for a ramp; none where it is left out
              In discrete time an expression in k, "1 + k*(1/2)^k", or a sequence "1, 0, 2", which is 0 behind its end.
     impulse  the strength v of an impulse v δ(t), one for each input, which moves the state to x₀ + B v at t = 0
-    Returns state, output, in t (in k).  Where the sign of a discriminant decides between oscillation and none, and where an
-    input is in resonance, conditions hold the branch that is shown and cases the others; undecided where the modes have no
-    closed form.  Raises `InputError` where nothing is given, for other functions of t, and where the impulse goes through to
-    the output; `ShapeMismatch`.
+    at_time  a positive instant at which the output is asked for, or the state of a plant without C: a number or "T", a
+             number of steps in discrete time
+    Returns state, output, in t (in k), and with at_time the value then.  Where the sign of a discriminant decides between
+    oscillation and none, and where an input is in resonance, conditions hold the branch that is shown and cases the others;
+    undecided where the modes have no closed form.
+    Raises `InputError` where nothing is given, for other functions of t, for a value at infinity, and where the impulse goes
+    through to the output; `ShapeMismatch`.
     Source: T. Kailath, Linear Systems, ch. 2; K. Ogata, Modern Control Engineering, 5th ed., ch. 9.
     """
-    plant = plant.knowing(initial, input, impulse)
+    plant = plant.knowing(initial, input, impulse, at_time)
     if not plant.is_discrete:
         require_continuous(plant, "response")
     if initial is None and input is None and impulse is None:
         message = "nothing moves the plant: neither an initial state nor an input is given"
         raise InputError(message, where="specification.input", repair='give input = "1" for a step, or initial')
+    instant = None if at_time is None else read_horizon(plant, at_time, "at_time")
+    if instant == INFINITE:
+        message = "the value at infinity is a limit"
+        raise InputError(
+            message, where="specification.at_time", repair="give an instant; the limit is seen in the output"
+        )
     if plant.is_discrete:
         choose("response", method, "superposition")
-        return response_in_steps(plant, initial, input, impulse).asked(method)
+        return response_in_steps(plant, initial, input, impulse, instant).asked(method)
     size = (plant.order, 1)
     start = Matrix.zeros(*size) if initial is None else read_gain(initial, plant, "initial", size)
     v = None
@@ -76,10 +86,14 @@ def response(
     if input is not None:
         plant.require("B", task="response")
         u, _ = read_functions(input, plant, "input", plant.inputs)
-    return choose("response", method, "superposition").solve(plant, {"initial": start, "input": u, "impulse": v})
+    return choose("response", method, "superposition").solve(
+        plant, {"initial": start, "input": u, "impulse": v, "at_time": instant}
+    )
 
 
-def response_in_steps(plant: StateSpace, initial: object, given_input: object, impulse: object) -> ResponseInSteps:
+def response_in_steps(
+    plant: StateSpace, initial: object, given_input: object, impulse: object, instant: Scalar | None
+) -> ResponseInSteps:
     """Return the response to an initial state and an input; raises `InputError`, `ShapeMismatch`."""
     require_no_instant(plant)
     if impulse is not None:
@@ -94,7 +108,8 @@ def response_in_steps(plant: StateSpace, initial: object, given_input: object, i
     if given_input is not None:
         plant.require("B", task="response")
         u = _read_input(given_input, plant)
-    return ResponseInSteps.of(plant, "superposition", {"initial": start, "input": u}, {})
+    asked = {"initial": start, "input": u, "at_time": instant}
+    return ResponseInSteps.of(plant, "superposition", asked, {})
 
 
 def _read_input(value: object, plant: StateSpace) -> Matrix:

@@ -45,7 +45,7 @@ class ResponseInSteps(Response):
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
         """Return the result for a plant; `asked` holds the initial state and the input in k."""
         m, start, u = plant.matrices, asked["initial"], asked["input"]
-        shared = {"initial": start, "input": u, "impulse": None, "start": start, "taken": taken, "chosen": {}}
+        shared = {**asked, "impulse": None, "start": start, "taken": taken, "chosen": {}}
         A, z = m.A, start
         if u is not None:
             A, z = _with_input(m.A, m.B, start, u, plant.variable)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.enclosure import is_number
+from symobs.exact.core.generators import substitute
 from symobs.exact.time_functions.matrix_exponential import NoClosedForm
 from symobs.exact.time_functions.quasipolynomial import Table, matrix_at, product, table_of
 from symobs.formula.tree.written import written
@@ -40,7 +41,7 @@ from symobs.tasks.analysis.time_response.response_plot import InputModel, exosys
 from symobs.tasks.result import holds
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Collection, Iterator, Mapping
 
     from symobs.exact.time_functions.matrix_exponential import Exponential
     from symobs.formula.tree import Environment
@@ -61,11 +62,16 @@ class Response(DampingCases):
     #: The letter of time.
     clock: ClassVar[str] = "t"
     main: ClassVar[str] = "state"
-    asked_for: ClassVar[tuple[str, ...]] = ("initial", "input", "impulse")
+    asked_for: ClassVar[tuple[str, ...]] = ("initial", "input", "impulse", "at_time")
+
+    @classmethod
+    def fields_asked(cls, given: Collection[str]) -> tuple[str, ...]:
+        """Return the response, and its value at an instant that is given."""
+        return (*super().fields_asked(given), *(("value",) if "at_time" in given else ()))
 
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant; `asked` holds the initial state, the input in t, and the strength of its impulse."""
+        """Return the result for a plant; `asked` holds the initial state, the input in t, its impulse, and an instant."""
         v = asked["impulse"]
         start = asked["initial"] if v is None else asked["initial"] + plant.matrices.B @ v
         shared = {**{name: asked[name] for name in cls.asked_for}, "start": start, "taken": taken, "chosen": {}}
@@ -99,7 +105,8 @@ class Response(DampingCases):
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time, and the initial state."""
         names = ("initial", "input", "impulse", "exponential", "forced", "state", "output")
-        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+        found = tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+        return found if self.value_then is None else (*found, self.value_then)
 
     def claims(self) -> Iterator[Claim]:
         """Yield the differential equation, the start, and the output."""
@@ -111,7 +118,7 @@ class Response(DampingCases):
         names |= {"exp_At": "exponential", "x_f": "forced"}
         values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
         values |= {name: answer[key] for name, key in names.items() if answer.get(key) is not None}
-        e = time_environment(self.plant, values)
+        e = time_environment(self.plant, values, answer["at_time"] if k == "t" else None)
         if "exp_At" in values:
             yield from exponential_claims(e)
         if "x_f" in values:
@@ -123,6 +130,19 @@ class Response(DampingCases):
             yield holds(e, "x_0 = {begun}", "x0 is the initial state and what the impulse adds", begun=begun)
         if answer["output"] is not None:
             yield holds(e, f"y_{k} = {self.seen}")
+        if self.value_then is not None:
+            yield holds(e, "{then} = {value}", then=self.at_instant(e), value=self.value_then)
+
+    @cached_property
+    def value_then(self) -> Matrix | None:
+        """The output, or the state of a plant without C, at the instant that is asked for."""
+        moving, instant = self.answer["state" if self.answer["output"] is None else "output"], self.answer["at_time"]
+        return None if instant is None or moving is None else substitute(moving, {self.clock: instant}).normal()
+
+    def at_instant(self, e: Environment) -> Term:
+        """Return y(T), or x(T)."""
+        letter = f"{'x' if self.answer['output'] is None else 'y'}_{self.clock}"
+        return e[letter].at(self.clock, self.answer["at_time"])
 
     def rate(self, e: Environment) -> Term:
         """Return x′."""
@@ -150,6 +170,8 @@ class Response(DampingCases):
         """State and output in t; where there is none, the question that is open."""
         asked = self.answer.get("question")
         found = {name: self.answer[name] for name in ("state", "output")}
+        if self.answer["at_time"] is not None:
+            found["value"] = self.value_then
         return {**found, **({"question": asked} if asked else {})}
 
     @cached_property
@@ -173,7 +195,7 @@ class Response(DampingCases):
 
     def write(self, page: Builder) -> None:
         """Write the matrix exponential, what is given, the forced response, state and output, the check."""
-        page.in_time(*self.everything())
+        page.in_time(*self.everything(), at=self.answer["at_time"])
         given(page)
         with page.section("response"):
             tell_polynomial(page)
@@ -258,6 +280,9 @@ def write_branch(page: Builder, result: Response) -> None:
     if answer["output"] is not None:
         shown = result.seen, _entry(answer["output"])
         page.define(f"y_{k}", *shown, say="response_output", answer=True, closing=False)
+    if result.value_then is not None:
+        then = relation(result.at_instant(page.environment), _entry(result.value_then))
+        page.equal(then, say="response_at_time", answer=True)
     moved = page.line(f"{{rate}} = {result.moved}", rate=result.rate(page.environment))
     page.verified("steps_checked" if in_steps else "response_checked", moved, start=relation(x.at(k, 0), x_0))
 

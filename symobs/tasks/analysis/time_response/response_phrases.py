@@ -14,6 +14,7 @@ PHRASES: dict[str, str] = {
     "steps_state": "The state is therefore, by the powers of the matrix of plant and input together,",
     "steps_checked": "The state satisfies the difference equation and has the initial value {start}.",
     "response_output": "The output is",
+    "response_at_time": "The value that is asked for is",
     "response_not_given": "Therefore the response is not given either.",
     "response_checked": "The state satisfies the differential equation and has the initial value {start}.",
 }
@@ -27,4 +28,5 @@ QUESTIONS: dict[str, str] = {
     "ask response discrete input": "The input from $k=0$ on is {input}, and the initial state is zero. Find the response of the plant.",
     "ask response discrete initial input": "The initial state is {initial}, and the input from $k=0$ on is {input}. Find the response of the plant.",
     "also response impulse": "At $t=0$ an impulse of strength {impulse} acts on the input.",
+    "also response at_time": "Also give its value at the instant {at_time}.",
 }

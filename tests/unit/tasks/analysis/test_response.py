@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 import sympy
+from scipy.linalg import expm  # type: ignore[import-untyped]
 
 import symobs
 from symobs import StateSpace
@@ -62,6 +65,29 @@ def test_outputs_that_contradict_each_other_agree_somewhere() -> None:
     found = symobs.initial_state(StateSpace("[0 1; 0 0]", C="[1 0; 0 1]"), output=["p*t", "q"])
     (case,) = found.cases
     assert (found.verdict, case.when, case.result.x0) == ("no", (sympy.Eq(p - q, 0),), (0, q))
+
+
+@tabled
+def test_the_value_at_an_instant(plant: dict[str, Any], asked: dict[str, Any], instant: int | str, said: str) -> None:
+    """The output, or the state where there is none, and on a plant with letters in every case."""
+    found = symobs.response(StateSpace(**plant), **asked, at_time=instant)
+    A, order, discrete = np.array(plant["A"]), len(plant["A"]), "dt" in plant
+    whole = np.block([[A, np.array(plant["B"])], [np.zeros((1, order)), np.array([[int(discrete)]])]])
+    begins = np.array([*asked.get("initial", [0] * order), asked["input"]])
+    moved = np.linalg.matrix_power(whole, int(instant)) if discrete else expm(whole * float(Fraction(instant)))
+    expected = np.array(plant.get("C", np.eye(order))) @ (moved @ begins)[:order]
+    assert [complex(x).real for x in found.value] == pytest.approx(list(expected), rel=1e-10)
+    assert said in text_of(found)
+
+
+def test_the_value_in_a_case() -> None:
+    """x' = −a x + e^{−ct} from 0: T e^{−cT} where a = c."""
+    T = sympy.Symbol("T", positive=True)
+    plant = StateSpace("[-a]", "[1]", "[1]", symbols={"T": "positive", "a": "real", "c": "real"})
+    (case,) = symobs.response(plant, input="exp(-c*t)", at_time="T").cases
+    (value,), expected = case.result.value, T * sympy.exp(-c * T)
+    told = value.subs({symbol: {"a": c, "c": c, "T": T}[symbol.name] for symbol in value.free_symbols})
+    assert sympy.simplify(told - expected) == 0
 
 
 def test_modes_without_a_closed_form_are_undecided() -> None:
