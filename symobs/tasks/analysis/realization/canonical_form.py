@@ -23,7 +23,7 @@ from symobs.exact import (
     modulo,
     transfer,
 )
-from symobs.exact.linear_algebra.modal_matrix import modal_matrix
+from symobs.exact.linear_algebra.modal_matrix import cyclic_vector, modal_matrix
 from symobs.formula.tree import Environment
 from symobs.formula.tree.term import block
 from symobs.ground.dataclass import dataclass
@@ -43,6 +43,7 @@ from symobs.tasks.result import Case, Result, choose, equality, holds, method, t
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.exact.linear_algebra.modal_matrix import Blocks
     from symobs.proof.certificate.claims import Certificate
     from symobs.system import StateSpace
     from symobs.system.specification import MatrixText, Name
@@ -99,6 +100,12 @@ class CanonicalForm(Result):
         nonzero = [c.expression for c in self.holds_where]
         return self.plant.in_coordinates(answer["A"], B, C, answer["D"], nonzero)
 
+    @property
+    def has_ones(self) -> bool:
+        """Whether B̄ of a modal form has a 1 in each block and is 0 elsewhere."""
+        blocks, B = self.answer["blocks"], self.answer["B"]
+        return bool(blocks) and B is not None and bool((B - cyclic_vector(blocks, self.plant.variable)).is_zero)
+
     def claims(self) -> Iterator[Claim]:
         """Yield the change of coordinates and the form; or that the rank is below n."""
         m, answer, n = self.plant.matrices, self.answer, self.plant.order
@@ -137,6 +144,9 @@ class CanonicalForm(Result):
         elif self.kind == "modal":
             blocks = modal_matrix(self.answer["blocks"], self.plant.variable)
             yield equality(A_bar, blocks, e, "A_bar consists of the blocks of the factors of chi")
+            if self.has_ones:
+                ones = cyclic_vector(self.answer["blocks"], self.plant.variable)
+                yield holds(e, "B_bar = {ones}", "B_bar has a 1 in each block", ones=ones)
             product = Scalar.of(1)
             for factor, length in self.answer["blocks"]:
                 product = product * factor**length
@@ -219,7 +229,7 @@ class CanonicalForm(Result):
             if conditions := [c.expression for c in self.holds_where if c.kind == "existence"]:
                 page.assume("coordinates_provided", *conditions)
         else:
-            page.define("S", page.value(self.answer["inverse"]), say="modal_basis")
+            page.define("S", page.value(self.answer["inverse"]), say="modal_ones" if self.has_ones else "modal_basis")
             conditions = [c.expression for c in self.holds_where if c.kind == "existence"]
             if conditions:
                 page.assume("distinct_provided", *conditions)
@@ -264,6 +274,7 @@ def solve(plant: StateSpace, kind: str, method_name: str) -> CanonicalForm:
     S: Matrix | None
     if kind == "modal":
         S, blocks = modal_basis(m.A, chi, variable)
+        S = _with_ones(plant, S, blocks)
     else:
         hankel = hankel_of(chi.coefficients(variable)[1:])
         A, C = (m.A.T, m.B.T) if kind == "controllable" else (m.A, m.C)
@@ -276,6 +287,20 @@ def solve(plant: StateSpace, kind: str, method_name: str) -> CanonicalForm:
             T, S = S.T, T.T
         answer |= _moved(plant, T, S)
     return CanonicalForm(plant, method_name, {**answer, "polynomial": chi, "blocks": blocks}, kind)
+
+
+def _with_ones(plant: StateSpace, S: Matrix, blocks: Blocks) -> Matrix:
+    """Return the basis in which B̄ of one input has a 1 in each block, where it is one wherever S is."""
+    A, B, signs = plant.matrices.A, plant.matrices.B, plant.symbols.signs
+    if plant.inputs != 1 or len({factor for factor, _ in blocks}) < len(blocks):
+        return S
+    modal = modal_matrix(blocks, plant.variable)
+    own, wanted = (power_rows(a.T, b.T).T for a, b in ((A, B), (modal, cyclic_vector(blocks, plant.variable))))
+    if not plant.simplified(own.determinant()):
+        return S
+    found = (own @ wanted.inverse()).normal()
+    zeros, further = (vanishing_factors((V.determinant(), V.common_denominator()), signs) for V in (S, found))
+    return found if set(further) <= set(zeros) else S
 
 
 def _moved(plant: StateSpace, T: Matrix, S: Matrix) -> dict[str, Matrix]:
@@ -311,7 +336,8 @@ def canonical_form(
 
     plant    n states; one input for "controllable", one output for "observable"; only A for "modal"
     kind     controllable: ones above the diagonal, −aₙ … −a₁ in the last row, B̄ = eₙ; observable: its transpose, C̄ = eₙᵀ;
-             modal: block diagonal and real, a block for each elementary divisor of A over Q(parameters);
+             modal: block diagonal and real, a block for each elementary divisor of A over Q(parameters), B̄ of one input
+             with a single 1 in each block where such coordinates are no less general;
              controllable where neither kind nor T is given
     T        n×n with an inverse, in the place of a kind: the plant in the coordinates T x
     Returns T, A, B, C, D, polynomial.  Raises `InputError` where a matrix is missing or there are several inputs (outputs).

@@ -24,6 +24,7 @@ PHRASES: dict[str, str] = {
     "last_row_controllable": "The columns of the controllability matrix, combined with these coefficients, give the basis of the controllable canonical form:",
     "last_column_observable": "The rows of the observability matrix, combined with these coefficients, give the coordinates of the observable canonical form:",
     "modal_basis": "The columns of $S$ are bases of the invariant subspaces belonging to the factors: eigenvectors for rational roots, chains of generalised eigenvectors for defective ones, and $v$ with its images under $A$ for a factor without rational roots.",
+    "modal_ones": "The columns of $S$ are bases of the invariant subspaces belonging to the factors: eigenvectors for rational roots, chains of generalised eigenvectors for defective ones, and $v$ with its images under $A$ for a factor without rational roots. Their lengths are such that $B_bar$ has a single 1 in each block:",
     "canonical_impossible_controllable": "Only a controllable pair has a controllable canonical form.",
     "canonical_impossible_observable": "Only an observable pair has an observable canonical form.",
     "coordinates_given": "The new state is $T x$ with",
