@@ -25,20 +25,36 @@ FUNCTIONS = {
     "variants": "symobs.applications.variants",
 }
 
-#: What other programs call a task.
+#: What tasks are called by other programs, in books, and in German.
 SYNONYMS = {
     "acker": "state_feedback",
+    "beobachtbarkeit": "observability",
+    "beobachter": "observer",
     "c2d": "zero_order_hold",
+    "care": "lqr",
     "ctrb": "controllability",
+    "dlqr": "lqr",
+    "estimator": "observer",
     "expm": "matrix_exponential",
     "gram": "gramian",
+    "kalman_decomposition": "decomposition",
+    "kalman_filter": "kalman",
+    "lqe": "kalman",
+    "lqg": "compensator",
     "lsim": "response",
+    "luenberger_observer": "observer",
+    "lyap": "lyapunov",
     "minreal": "decomposition",
     "obsv": "observability",
     "place": "state_feedback",
+    "pole_placement": "state_feedback",
+    "polvorgabe": "state_feedback",
+    "riccati": "lqr",
     "routh": "stability_region",
     "ss2tf": "transfer_function",
     "step": "response",
+    "step_response": "response",
+    "steuerbarkeit": "controllability",
     "tf": "transfer_function",
     "zoh": "zero_order_hold",
 }

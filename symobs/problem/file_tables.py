@@ -112,6 +112,16 @@ def _toml_repair(message: str, line: str, text: str) -> str:
         return "a problem in JSON begins with {"
     if "overwrite" in message or "twice" in message:
         return "keep one of them"
+    if re.search("[“”„‟«»]", line):
+        return 'write straight quotes: "'
+    if "newline" not in message and (message.startswith("Illegal character '\\n'") or "Unterminated" in message):
+        return 'a text ends on its line: close it with ", and set the rows of a matrix apart by ;'
+    if "\\" in message and "\\" in line:
+        return "write LaTeX in single quotes: A = '\\begin{bmatrix} … \\end{bmatrix}'"
+    if re.match(r"\s*[\w.]+\s*:", line):
+        return "write = in place of the colon"
+    if re.search(r"%(?!\S)|%\s", line.rpartition('"')[2]):
+        return "a remark begins with #"
     brackets = re.search(r"""=\s*\[([^"']*)""", line)
     if brackets and re.search(r"""[^,;\s\[][ ;]+[-+\w(]""", brackets[1]):
         return 'write commas between the entries, or the matrix in quotes: "[0 1; 0 -1]"'
@@ -151,7 +161,7 @@ def _with_constant(name: str, value: Any, symbols: Symbols) -> Symbols:
     Raises `InputError` where the name is a symbol too, and where the value is no number.
     """
     where, known = f"constants.{shown(name, 40)}", symbols.constants
-    declared_name(name, where)
+    name = declared_name(name, where)
     if len(known) == _MAX_CONSTANTS:
         message = f"more than {_MAX_CONSTANTS} constants are declared"
         raise InputError(message, where="constants", repair="write the numbers themselves")

@@ -100,10 +100,35 @@ def keys_of(task: Task, specification: Mapping[str, Any]) -> dict[str, str]:
     return found
 
 
+#: What keys are called elsewhere, and in German.
+_OTHER_WORDS = {
+    "aufgabe": "task",
+    "titel": "title",
+    "strecke": "plant",
+    "system": "plant",
+    "vorgabe": "specification",
+    "spezifikation": "specification",
+    "polstellen": "poles",
+    "pole": "poles",
+    "eigenwerte": "poles",
+    "eigenvalues": "poles",
+    "desired_poles": "poles",
+    "estimator_poles": "observer_poles",
+    "controller_poles": "control_poles",
+    "feedback_poles": "control_poles",
+    "regler_pole": "control_poles",
+    "beobachter_pole": "observer_poles",
+    "ts": "dt",
+    "sampling_time": "dt",
+    "x0": "initial",
+}
+
+
 def repair_of(key: str, known: Collection[str], where: str) -> str:
     """Return what to do about a key that is not known where it stands: most are, elsewhere."""
-    longer = (name for name in known if len(key) > 2 and name.startswith(key.rstrip("s")))
-    near = next(longer, None) or nearest(key, known)
+    plain = _OTHER_WORDS.get(key.lower(), key.rstrip("s"))
+    longer = (name for name in known if len(key) > 2 and name.startswith(plain))
+    near = plain if plain in known else next(longer, None) or nearest(key, known)
     of = [task.name for task in tasks().values() if key in task.keywords]
     if key == "problem" and not where:
         return "the file of a sheet is for `symobs sheet`"

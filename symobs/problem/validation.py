@@ -8,6 +8,7 @@ from dataclasses import field, replace
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
+from symobs import SYNONYMS
 from symobs.formula.convention import STANDARD, Convention, convention_named
 from symobs.formula.expression import comma_between_digits, declared_name, parse_polynomial, without_comma
 from symobs.formula.expression.names import NAME
@@ -32,7 +33,7 @@ from symobs.problem.schema import (
 )
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.reading import read_time
-from symobs.system.specification import from_list, is_pattern, parse_signal, read_poles
+from symobs.system.specification import as_typed, from_list, is_pattern, parse_signal, read_poles
 from symobs.system.specification.pole_patterns import OTHERS, named_parts, require_positive
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.result import Document, Result, Task, methods, result_type, task_named, tasks
@@ -166,8 +167,13 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
         data, symbols, dt, errors, optional=bool(wanted) and all(task.works_without_plant for task in wanted)
     )
     specification, own = _specification(data, (*asked, *wanted), convention, symbols, errors)
+    kinds = _kinds((*asked, *wanted))
+    for table in (specification, *own.values()):
+        for name, value in table.items():
+            with errors:
+                table[name] = as_typed(name, kinds[name], value, plant)
     if language_named(language).has_comma:
-        _require_clear_commas(specification, _kinds((*asked, *wanted)), errors)
+        _require_clear_commas(specification, kinds, errors)
     expect = table_of(data, "expect", errors)
     printed = _printed(data.get("printed", []), errors)
     values = table_of(data, "values", errors)
@@ -193,13 +199,21 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
 def _without_consequences(found: Sequence[SymobsError], data: Mapping[str, Any]) -> list[SymobsError]:
     """Return errors without those of names that a faulty declaration was to declare: they are mended with it."""
     meant, refused = _meant_to_be_declared(data)
+    names = {*map(str, _listed_tasks(data))}
+    misspelt = [
+        f"{error.where.rpartition('.')[0]}.{near[1]}".lstrip(".") if near[1] not in names else "specification"
+        for error in found
+        if error.message == "unknown key" and (near := re.match(r"did you mean (\w+)\?", error.repair or ""))
+    ]
 
     def follows(error: SymobsError) -> bool:
         is_unknown = isinstance(error, UnknownName) and error.facts.get("name") in meant
         is_told = not error.where.startswith("symbols") and any(
             error.message.startswith(f'"{name}" ') for name in refused
         )
-        return is_unknown or is_told
+        is_missing = "missing" in error.message or error.message == "no task is named"
+        is_misspelt = is_missing and any(error.where == key or error.where.startswith(f"{key}.") for key in misspelt)
+        return is_unknown or is_told or is_misspelt
 
     return [error for error in found if not follows(error)]
 
@@ -282,6 +296,11 @@ def _printed(value: object, errors: Errors) -> tuple[Mapping[str, Any], ...]:
     return found
 
 
+def _listed_tasks(data: Mapping[str, Any]) -> list[Any]:
+    value = data.get("tasks", data.get("task", []))
+    return value if isinstance(value, list) else [value]
+
+
 def _tasks(data: Mapping[str, Any], errors: Errors, *, required: bool) -> tuple[Task, ...]:
     key = "tasks" if "tasks" in data else "task"
     if "task" in data and "tasks" in data:
@@ -290,7 +309,7 @@ def _tasks(data: Mapping[str, Any], errors: Errors, *, required: bool) -> tuple[
     if value == [] and required:
         errors.note("no task is named", key, f'write for example task = "observer"; {_listed()}')
     found: dict[str, Task] = {}
-    for i, name in enumerate(value if isinstance(value, list) else [value]):
+    for i, name in enumerate(_listed_tasks(data)):
         where = f"{key}[{i}]" if isinstance(value, list) else key
         if not isinstance(name, str):
             errors.note(f"the name of a task is expected, but {came(name)} came", where, _listed())
@@ -323,7 +342,8 @@ def _plant_task(data: Mapping[str, Any], asked: Sequence[Task], only: str | None
 
 
 def _listed(name: str = "") -> str:
-    near = get_close_matches(name, tasks(), 1)
+    other = re.sub(r"[^a-z]+", "_", name.lower())
+    near = [SYNONYMS[other]] if other in SYNONYMS else get_close_matches(name, tasks(), 1)
     return f"{f'did you mean {near[0]}? ' if near else ''}known tasks are {', '.join(sorted(tasks()))}"
 
 
@@ -334,13 +354,14 @@ def _symbols(table: Mapping[str, Any], errors: Errors) -> Symbols:
     kept: dict[str, Any] = {}
     for name in list(table)[:_MAX_SYMBOLS]:
         with errors:
-            kept[declared_name(name, f"symbols.{shown(name, 40)}")] = "real"
+            typed = declared_name(name, f"symbols.{shown(name, 40)}")
+            kept[typed] = "real"
             entry, before = table[name], len(errors.found)
             for part in [{key: value} for key, value in entry.items()] if isinstance(entry, Mapping) else [entry]:
                 with errors:
                     Symbols.of({name: part})
             if len(errors.found) == before:
-                kept[name] = entry
+                kept[typed] = entry
     return Symbols.of(kept)
 
 
@@ -387,6 +408,10 @@ def _specification(
         for name, task in by_name.items()
     }
     shared = {name: value for name, value in table.items() if name not in own}
+    for name in [name for name, value in shared.items() if isinstance(value, Mapping) and name not in _kinds(wanted)]:
+        if near := get_close_matches(name, [task.name for task in wanted], 1):
+            errors.note("unknown key", f"specification.{name}", f"did you mean {near[0]}?")
+            del shared[name]
     return _read_specification(shared, "specification", wanted, convention, symbols, errors), own
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Ideal, Matrix, Scalar
 from symobs.exact.core.generators import PI, NotWritten, identities, square_root, symbols_in, symbols_named
-from symobs.formula.expression import declared_name, parse_matrix
+from symobs.formula.expression import declared_name, parse_matrix, without_latex
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ShapeMismatch, together
 from symobs.system.reading import Nonlinear, has_decimals, read_time, read_values
@@ -210,6 +210,9 @@ def _names(given: object, where: str) -> tuple[str, ...]:
     return names
 
 
+_ONE_COLUMN = re.compile(r"\s*\[([^][,]*)\]\s*")
+
+
 def _column(value: object, symbols: Symbols, where: str) -> Matrix | None:
     """Return functions of the states and inputs as a column; h may be left out."""
     if value is None and where == "plant.f":
@@ -217,6 +220,8 @@ def _column(value: object, symbols: Symbols, where: str) -> Matrix | None:
     if value is None:
         return None
     rows: Any = value.tolist() if hasattr(value, "tolist") else value
+    if isinstance(rows, str) and ";" in rows and (inside := _ONE_COLUMN.fullmatch(without_latex(rows))):
+        rows = inside[1].split(";")  # of a column each row is one expression, and blanks in it are products
     if not isinstance(rows, str):
         rows = [rows] if not isinstance(rows, (list, tuple)) else rows
         rows = [[_text(entry) for entry in (row if isinstance(row, (list, tuple)) else [row])] for row in rows]

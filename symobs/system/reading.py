@@ -24,7 +24,7 @@ from symobs.exact.core.generators import (
     substitute,
     symbols_in,
 )
-from symobs.formula.expression import parse_matrix, parse_scalar
+from symobs.formula.expression import parse_matrix, parse_scalar, without_latex
 from symobs.formula.expression.parse import FLOATS
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
@@ -304,8 +304,19 @@ class Matrices:
         return self.A, self.B, self.C, self.D, self.has_input, self.has_output
 
 
+#: A vector in parentheses: (1, 0), (1, 0)^T.
+VECTOR = re.compile(r"\s*\(([^()]*,[^()]*)\)\s*(?:'|\^T|ᵀ)?\s*")
+
+
 def as_rows(name: str, value: Any) -> Any:
-    """Return the rows of a matrix: a flat list is a column of B or a row of C or D, a number a 1×1 matrix."""
+    """Return the rows of a matrix: a flat list is a column of B or a row of C or D, a number a 1×1 matrix.
+
+    A vector in parentheses, (1, 0) or (1, 0)^T, is such a list; LaTeX is read as a text of a problem file.
+    """
+    if isinstance(value, str):
+        value = without_latex(value)
+        vector = VECTOR.fullmatch(value) if name != "A" else None
+        return f"[{vector[1].replace(',', ';') if name == 'B' else vector[1]}]" if vector else value
     if (
         value is None
         or isinstance(value, (str, Matrix, dict, set))

@@ -190,11 +190,18 @@ class StateSpace:
         for name, value in (("A", A), ("B", B), ("C", C), ("D", D)):
             try:
                 place = f"plant.{name}"
+                first = parts.get("A")
+                if isinstance(value, str) and value.strip() == "I" and "I" not in known.signs and first is not None:
+                    parts[name] = Matrix.identity(first.shape[0])
+                    continue
                 parts[name] = None if value is None else read_matrix(value, named, place, texts, functions=True)
             except SymobsError as error:
                 errors.append(error)
         if parts.get("D") == Matrix.zeros(1, 1):
             parts["D"] = None
+        rows, column = parts.get("A"), parts.get("B")
+        if rows is not None and column is not None and column.shape == (1, rows.shape[0]):
+            parts["B"] = column.T  # it is written as a row
         if "A" in parts:
             errors += shape_errors({name: parts.get(name) for name in "ABC"} | {"D": None if errors else parts["D"]})
         raise_all(errors)

@@ -140,7 +140,13 @@ def _require_parameter(symbol: Any, name: str, sign: str | None, place: str) -> 
         raise InputError(message, where=place, repair="declare the sign in one place")
 
 
+#: Signs as relations: omega = "> 0".
+_RELATIONS = {">0": "positive", "<0": "negative", "!=0": "nonzero", "≠0": "nonzero"}
+_RELATIONS |= {">=0": "nonnegative", "≥0": "nonnegative", "<=0": "nonpositive", "≤0": "nonpositive"}
+
+
 def _sign(entry: object, place: str) -> str:
+    entry = _RELATIONS.get(entry.replace(" ", ""), entry) if isinstance(entry, str) else entry
     if entry not in SIGNS:
         sign, repair = place.rpartition(".")[2], f"write one of {', '.join(SIGNS)}"
         if sign in SIGNS and isinstance(entry, list) and 0 < len(entry) <= _FEW:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Ideal, Matrix, Scalar, companion, product_of, resultant
 from symobs.exact.linear_algebra.modal_matrix import modal_realisation
-from symobs.formula.expression import parse_polynomial, parse_scalar
+from symobs.formula.expression import parse_polynomial, parse_scalar, right_side
 from symobs.formula.expression.written_fraction import parse_fraction
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import BudgetExceeded, InputError
@@ -68,6 +68,7 @@ def read_transfer_function(value: object, symbols: Symbols, variable: str, where
     """Return the transfer function of a text, a SymPy expression, a number or two lists of coefficients."""
     written: Any
     if isinstance(value, str):
+        value = right_side(value)
         found = parse_scalar(value, symbols.names, variable=variable, where=where, functions=True)
         written = parse_fraction(value, symbols.names, variable=variable, where=where)
     elif is_sympy(value):

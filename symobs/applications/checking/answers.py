@@ -17,13 +17,12 @@ from symobs.applications.checking.handwriting import (
     readable,
     squashed,
     without_drawings,
-    without_latex,
     without_marks,
     without_words,
 )
 from symobs.applications.checking.wording import PROPERTIES, Said, in_inequalities, verdict_of, what_is_said
 from symobs.exact import Factored, Matrix, Scalar
-from symobs.formula.expression import declared_name, parse_matrix, parse_scalar
+from symobs.formula.expression import declared_name, parse_matrix, parse_scalar, without_latex
 from symobs.formula.expression.parse import ROW, ROWS
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass

@@ -11,6 +11,7 @@ from itertools import combinations, pairwise
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar
+from symobs.formula.expression import without_latex
 from symobs.formula.expression.names import spellings
 from symobs.formula.notation import GREEK_LETTERS, LETTERS
 from symobs.ground.errors import InputError
@@ -44,64 +45,6 @@ def without_marks(text: str) -> str:
         text = found[1]
     text = _BULLET.sub("", _STATEMENT.sub("", _FENCE.sub("", text)))
     return _STRONG.sub(r"\2", text) if "`" in text or "**" in text or "__" in text else text
-
-
-# -- LaTeX -------------------------------------------------------------------------------------------------------------
-
-
-_TABLE = r"(?:[bpBvV]?(?:small)?matrix|array)\}"
-_ENVIRONMENT = re.compile(rf"\\begin\{{{_TABLE}(?:\{{[lcr|]*\}})?(.*?)\\end\{{{_TABLE}", re.DOTALL)
-_DISPLAY = re.compile(
-    r"\\(?:begin|end)\{(?:align|equation|gather|multline|eqnarray|split|aligned|displaymath|math)\*?\}"
-)
-_ROW_END = re.compile(r"\\\\(?:\[[^]]*\])?|\\cr\b")
-#: Commands with nothing to read, those that only set their argument, and fences.
-_SPACES = re.compile(r"(?<!\\)\\(?:[,;:! ]|q?quad\b|displaystyle\b)|\\(?:left|right|[bB]igg?[lr]?)(?![A-Za-z])\.?|\$")
-_SET = re.compile(
-    r"\\(?:math(?:rm|bf|sf|it|cal)|boldsymbol|operatorname|text(?:bf)?|boxed|underline)(?:\s*\{([^{}]*)\}|\s+([A-Za-z0-9]))"
-)
-_APPLIED = re.compile(
-    r"\\(sinh?|cosh?|exp)\s*(?:(?=\()|([\d.]*\s*(?:\\[A-Za-z]+|[A-Za-z](?![A-Za-z]))(?:_\w+)?)(?=\s*(?:$|[-+=,;&)\]}]|\\\\)))"
-)
-_QUOTIENT = re.compile(r"\\[dtc]?frac\s*(?:\{([^{}]*)\}|(\d))\s*(?:\{([^{}]*)\}|(\d))")
-#: Groups of LaTeX within each other.
-_DEEPEST = 20
-_ROOT = re.compile(r"\\sqrt\s*\{([^{}]*)\}")
-_ABOVE, _BELOW = re.compile(r"\^\s*\{([^{}]*)\}"), re.compile(r"_\s*\{([^{}]*)\}")
-_SIGNS = {"cdot": "*", "times": "*", "div": "/", "top": "T", "implies": "=>", "land": " and ", "wedge": " and "}
-_SIGNS |= {"lor": " or ", "vee": " or ", "lt": "<", "gt": ">", "ne": "!=", "neq": "!="}
-_SIGNS |= {"approx": "≈", "le": "<=", "leq": "<=", "ge": ">=", "geq": ">="}
-
-
-def without_latex(text: str) -> str:
-    """Return a text whose LaTeX is written as in problem files: [1, 2; 3, 4], (a)/(b), exp(-t), omega_0."""
-    if not re.search(r"\\[][()A-Za-z]|[\^_]\{|\$", text):
-        return text
-    text = re.sub(r"\\text\{[^{}]*\}\s*\\qquad", "", text)  # the words before a display
-    text = re.sub(r"(?<!\\)\\[][()]|~(?!=)", " ", text)  # the signs around one, and blanks
-    text = re.sub(r"\\bar\s*\{?\s*([A-Za-z])\s*\}?", r"\1_bar", _SPACES.sub(" ", text))
-    for _ in range(_DEEPEST):
-        before = text
-        text = _SET.sub(lambda f: f[1] if f[1] is not None else f[2], text)
-        text = _QUOTIENT.sub(lambda f: f"(({f[1] or f[2]})/({f[3] or f[4]}))", text)
-        text = _ROOT.sub(r" sqrt(\1)", text)
-        text = _ABOVE.sub(lambda f: f"^{f[1].strip()} " if re.fullmatch(r"\s*\w+\s*", f[1]) else f"^({f[1]})", text)
-        text = _BELOW.sub(lambda f: "_" + re.sub(r"\s+", "", f[1]) + " ", text)
-        if before == text:
-            break
-    text = _ENVIRONMENT.sub(lambda found: _rows_of_latex(found[1]), text)
-    text = _SET.sub(lambda f: f[1] if f[1] is not None else f[2], _DISPLAY.sub("\n", text))
-    text = re.sub(r"(?<=[A-Za-z0-9])e\^", " e^", text)
-    text = _APPLIED.sub(lambda f: f" {f[1]}({f[2]})" if f[2] else f" {f[1]}", text)
-    text = re.sub(r"\\([A-Za-z]+)(_?)", lambda f: _SIGNS.get(f[1], f" {f[1]}{f[2] or ' '}"), text)
-    text = re.sub(r"[(\[|]\s*(\[[^][]*\])\s*[)\]|]", r"\1", text)
-    text = re.sub(r"\\[{}]", lambda found: found[0][1], text)
-    return _ROW_END.sub("\n", text).replace("&", " ")
-
-
-def _rows_of_latex(body: str) -> str:
-    rows = [row for row in _ROW_END.split(re.sub(r"\\hline", "", body)) if row.strip()]
-    return f"[{'; '.join(', '.join(cell.strip() for cell in row.split('&')) for row in rows)}]"
 
 
 # -- matrices drawn over several lines, in a box, as pages of text have them ---------------------------------------------
@@ -613,6 +556,10 @@ def coefficients_of(members: Sequence[str]) -> dict[str, str]:
     return found
 
 
+#: Definitions of a student's own letters within each other.
+_WITHIN = 20
+
+
 def with_own_letters(value: Any, values: Mapping[str, Any], known: Collection[str]) -> Any:
     """Return a value with what the answer says of letters that are not the problem's: k1 in [k1, k2] beside k1 = 3."""
 
@@ -621,7 +568,7 @@ def with_own_letters(value: Any, values: Mapping[str, Any], known: Collection[st
         is_own = isinstance(values.get(name), str) and not {name, name.translate(_DIGITS)} & {*known}
         return f"({values[name]})" if is_own else name
 
-    for _ in range(_DEEPEST if isinstance(value, str) else 0):
+    for _ in range(_WITHIN if isinstance(value, str) else 0):
         before, value = value, _OWN.sub(meant, value)
         if value == before or len(value) > _LONGEST:
             break

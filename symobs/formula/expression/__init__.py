@@ -1,5 +1,6 @@
 """Parsing of expressions: from the text of a user to exact values."""
 
+from symobs.formula.expression.latex import without_latex
 from symobs.formula.expression.names import declared_name
 from symobs.formula.expression.parse import (
     comma_between_digits,
@@ -7,7 +8,9 @@ from symobs.formula.expression.parse import (
     parse_poles,
     parse_polynomial,
     parse_scalar,
+    right_side,
     without_comma,
+    without_pole_names,
 )
 
 __all__ = [
@@ -17,5 +20,8 @@ __all__ = [
     "parse_poles",
     "parse_polynomial",
     "parse_scalar",
+    "right_side",
     "without_comma",
+    "without_latex",
+    "without_pole_names",
 ]

@@ -40,7 +40,9 @@ _MOST_COMPARED = 1_000
 
 
 def declared_name(name: object, where: str = "") -> str:
-    """Return `name` if it is admissible for a symbol; raises ExpressionError otherwise."""
+    """Return a name, or how a printed one is typed, if it is admissible for a symbol; raises ExpressionError otherwise."""
+    if isinstance(name, str) and not NAME.fullmatch(name) and _PRINTED.fullmatch(name):
+        name = spellings(name)[-1 if "_" not in name else 0]
     if not isinstance(name, str) or not NAME.fullmatch(name):
         came = f'"{shown(name)}"' if isinstance(name, str) else f"a {type(name).__name__}"
         repair = "begin with a letter A-Z or a-z and go on with letters, digits and _"
@@ -149,9 +151,15 @@ _SPELT = {letter: name for name, letter in GREEK_LETTERS.items()} | {
 
 
 _SANS_SERIF = "\U0001d5a0-\U0001d5d3"
-#: A name as it is typed, or a Greek letter or one without serifs, with indices below.
-PRINTED_NAME = rf"(?:[A-Za-z][A-Za-z0-9_]*|[{''.join(_SPELT)}{_SANS_SERIF}](?:_[A-Za-z0-9_]+)?)[{_BELOW}]*"
-_PAIR = re.compile(r"([^±]*)±([^±]*)")
+#: A name as it is typed, or a Greek letter or one without serifs, with indices below, as in LaTeX: ω_n, a₁, a_{11}.
+PRINTED_NAME = (
+    rf"(?:[A-Za-z][A-Za-z0-9_]*|[{''.join(_SPELT)}{_SANS_SERIF}](?:_(?:[0-9]+|[A-Za-z][A-Za-z0-9_]*))?)"
+    rf"(?:[{_BELOW}]+|(?<=_)\{{[A-Za-z0-9]+\}}|(?<![A-Za-z0-9_])_\{{[A-Za-z0-9]+\}})?"
+)
+_PRINTED = re.compile(PRINTED_NAME)
+_PAIR = re.compile(r"([^±]*)(?:±|\+/-)([^±]*)")
+#: The variable of a characteristic polynomial in a book, where a text has no s (z).
+EIGENVALUES = ("lambda", "lam", "p")
 
 
 _ASCII = (
@@ -168,6 +176,9 @@ def ascii_of(glyphs: str) -> str:
 
 def spellings(printed: str) -> tuple[str, ...]:
     """Return the names that are printed like this: ω₀ is omega0 or omega_0, ω_c omega_c."""
+    stem, brace, index = printed.partition("_{")
+    if brace:
+        return (f"{spellings(stem)[0]}_{index[:-1]}", spellings(stem)[0] + index[:-1])
     stem = printed.rstrip(_BELOW)
     digits = unicodedata.normalize("NFKC", printed[len(stem) :])
     letter, index = (stem[:1], stem[1:]) if stem[:1] in _SPELT else (stem, "")

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Complex, Matrix, Scalar, matrix_of_numbers
 from symobs.formula.expression.evaluation import MOST_CHARACTERS, MatrixRows, plain_rows, read
+from symobs.formula.expression.latex import without_latex
 from symobs.formula.expression.names import Names, Scope, declared_name, pairs
 from symobs.formula.expression.source import common_denominator_excess, shown
 from symobs.formula.expression.syntax import EQUAL_ROWS, unequal_row
@@ -38,7 +39,9 @@ __all__ = [
     "parse_poles",
     "parse_polynomial",
     "parse_scalar",
+    "right_side",
     "without_comma",
+    "without_pole_names",
 ]
 
 #: Rows in brackets of their own, as NumPy, SymPy and JSON print a matrix; [[1]; [2]] is a matrix of blocks.
@@ -130,6 +133,7 @@ def parse_poles(
     scope = Scope.of(names, None, where, functions=functions, rounding=rounding, roots=roots)
     scope = replace(scope, poles=True, letters=frozenset(letters))
     if isinstance(value, str):
+        value = _SET.sub(r"\1", without_latex(without_pole_names(value)))
         value = ",".join(str(one) for pole in _with_commas(value, where).split(",") for one in pairs(pole))
         scope = sharing(scope, [value], variable)
         return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))
@@ -149,6 +153,10 @@ def parse_poles(
     if plain is not None and len(plain[0][0]) == len(listed):
         return tuple(map(Complex.of, plain[0][0]))
     return tuple(Complex.of(_entry(pole, scope, f"{where}[{index}]")) for index, pole in enumerate(listed))
+
+
+#: Poles as a set: {-1, -2}.
+_SET = re.compile(r"^\s*\{([^{}]*)\}\s*$")
 
 
 def comma_between_digits(value: object) -> str:
@@ -189,6 +197,7 @@ def parse_polynomial(
     if hasattr(value, "__len__") and not isinstance(value, str):  # NumPy's arrays and its poly1d, too
         message = "a polynomial is written out, but a list of coefficients came"
         raise InputError(message, where=where, repair=f'write for example "{variable}^2 + 9 {variable} + 20"')
+    value = right_side(value) if isinstance(value, str) else value
     polynomial = _entry(value, Scope.of(names, variable, where, functions=functions), where)
     if isinstance(polynomial, Complex):
         message, repair = f"the polynomial in {variable} has complex coefficients", "write the conjugate factors too"
@@ -201,6 +210,47 @@ def parse_polynomial(
     else:
         return polynomial
     raise ExpressionError(message, where=where, repair=repair)
+
+
+#: "p(s) = …", "χ(λ) = …", "Y(s)/U(s) = G(s) = …"; "… = 0"; and the input behind a transfer function, "Y(s) = … U(s)".
+_OF = r"[^\W\d]\w{0,20}\s*\(\s*(?:s|z|p|lambda|lam|λ)\s*\)"
+_FUNCTION_OF = re.compile(rf"\s*(?:{_OF}\s*(?:/\s*{_OF}\s*)?=\s*)+(?!0\s*$)")
+_INPUT = re.compile(r"(?<=[)\d])\s*[*·]?\s*[UVRW]\(\s*[szp]\s*\)\s*$")
+
+
+def right_side(text: str) -> str:
+    """Return the expression of "p(s) = s^2 + 1", "s^2 + 1 = 0", "Y(s)/U(s) = 1/s" and "Y(s) = 1/s U(s)"."""
+    text = without_latex(text)
+    left = _FUNCTION_OF.match(text)
+    if left is not None:
+        text = _INPUT.sub("", text[left.end() :])
+    above, sign, right = text.rpartition("=")
+    return above if sign and right.strip() == "0" else text
+
+
+#: A pole by its name: s = …, λ1 = …, p_{1,2} = …
+_POLE_NAME = r"(?:lambda|lam|mu|[szpλμσ])(?:_?[0-9]{1,2}|_?\{[0-9, ]{1,20}\}|[₀-₉]{1,2})?"
+_NAMED_POLE = re.compile(rf"\s*((?:{_POLE_NAME}\s*=\s*)+)(.*)", re.DOTALL)
+_COMMA_OUTSIDE = re.compile(r",(?![^{}]*\})")
+_TIMES = {"double": 2, "twice": 2, "doppelt": 2, "zweifach": 2, "triple": 3, "dreifach": 3}
+_MULTIPLE = re.compile(rf"\(\s*({'|'.join(_TIMES)})\s*\)\s*$")
+
+
+def without_pole_names(text: str) -> str:
+    """Return the poles of "s = -1, -2", "λ1 = λ2 = -5", "p_{1,2} = -1 ± j" and "-5 (double)", one after the other."""
+    if "=" not in text and "(" not in text:
+        return text
+    found: list[str] = []
+    for piece in _COMMA_OUTSIDE.split(_SET.sub(r"\1", text)):
+        pole, count = piece, 1
+        if named := _NAMED_POLE.fullmatch(pole):
+            pole = named[2]
+            indices = [len(name.split(",")) for name in named[1].split("=")[:-1]]
+            count = 1 if len(pairs(pole)) > 1 else sum(indices)
+        if multiple := _MULTIPLE.search(pole):
+            pole, count = pole[: multiple.start()], count * _TIMES[multiple[1]]
+        found += [pole.strip()] * count
+    return ", ".join(found)
 
 
 # -- one number ---------------------------------------------------------------------------------------------------

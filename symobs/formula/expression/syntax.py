@@ -148,6 +148,7 @@ _OPERAND_ENDS = ("VALUE", "_CLOSE", "_RIGHT", "PRIME")
 _BEFORE_INNER_SIGN = ("MULTIPLY", "POWER", "inner sign")
 EQUAL_ROWS = "give every row the same number of entries"
 #: Outside brackets `2 g` and `C A` are products, inside they are two entries.
+_DECIMAL_COMMA = re.compile(r"(?<![0-9,.])[0-9]+,[0-9]+(?![0-9,.])")
 _SPACED_PRODUCT = re.compile(r"([0-9]|\b[A-Z]) +([A-Za-z(])")
 
 
@@ -273,6 +274,8 @@ class _Parser:
         if unequal:
             spaced = _SPACED_PRODUCT.search(self.source.text)
             meant = f"; a space sets entries apart, so write {spaced[1]}*{spaced[2]}… for a product" if spaced else ""
+            if comma := _DECIMAL_COMMA.search(self.source.text):
+                meant = f"; decimals have a point: {comma[0].replace(',', '.')}"
             raise self.source.error(unequal[0], left.start, EQUAL_ROWS + meant, kind=ShapeMismatch, row=unequal[1])
         nodes = tuple(SyntaxNode("row", tuple(row)) for row in rows)
         self.operands.append(SyntaxNode("block", nodes, places=(left.start,)))

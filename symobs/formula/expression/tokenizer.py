@@ -17,6 +17,7 @@ from symobs.exact.algebraic.rounded_decimals import as_generator
 from symobs.exact.core.generators import PI
 from symobs.formula.expression.names import (
     BLANK,
+    EIGENVALUES,
     FUNCTIONS,
     LONGEST_NAME,
     MINUS,
@@ -98,14 +99,28 @@ TOKENS = (
     r"(?P<NUMBER>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
     rf"|(?P<NAME>{PRINTED_NAME})"
     rf"|(?P<POWER>\*\*|\^)|(?P<MULTIPLY>[*/·⋅×])|(?P<ADD>[+{re.escape(MINUS)}])"
-    r"|(?P<OPEN>[(\[])|(?P<CLOSE>[)\]])|(?P<COMMA>,)|(?P<END>;)"
+    r"|(?P<OPEN>[(\[{])|(?P<CLOSE>[)\]}])|(?P<COMMA>,)|(?P<END>;)|(?P<UNIT>[°%])"
     rf"|(?P<RAISED>⁻?[{SUPERSCRIPTS}]+)|(?P<ROOT>√(?P<RADICAND>[0-9]+|{PRINTED_NAME})?)"
     rf"|(?P<SPACE>[ \t\r\n{BLANK}]+)"
 )
 
 
+#: The matrices that are made by a word, with an example.
+CONSTRUCTORS = {"diag": "diag(1, 10)", "eye": "eye(2)", "zeros": "zeros(2, 1)", "ones": "ones(2, 1)"}
+_ARGUMENTS = re.compile(r"\s*\(((?:[^()]|\((?:[^()]|\([^()]*\))*\))*)\)")
+#: An entry of diag, without commas outside of parentheses.
+_PART = re.compile(r"(?:[^(),\s]|\((?:[^()]|\([^()]*\))*\)|\s+(?=[-+*/^]\s)|(?<=[-+*/^])\s+)+")
+_SIZES, _MOST_SIZE = re.compile(r"[0-9]{1,3}(?:\s*,\s*[0-9]{1,3})?"), 30
+#: e^{-2t} and e^(-2t), where e is no name.
+_EXP = re.compile(r"\s*(?:\^|\*\*)(?=\s*[({])")
+#: The argument of sin ωt and cos 2t: numbers and names side by side, up to a sign that leaves no doubt.
+_FACTOR = rf"(?:[0-9]+(?:\.[0-9]+)?|(?!(?:{'|'.join(FUNCTIONS)})\b){PRINTED_NAME})"
+_BARE = re.compile(rf"\s+((?>{_FACTOR}(?:\s*{_FACTOR})*))(?=\s*(?:[-+),;\]}}]|$|(?:{'|'.join(FUNCTIONS)})\b))")
+_BARE_IN_BRACKETS = re.compile(rf"[ \t]+((?>{_FACTOR}+))(?=\s*(?:[-+),;\]]|$|\s))(?!\s*[/^*(])")
 _ROW = re.compile(r"[^][;\r\n]*")
 _CLOSING = {"(": ")", "[": "]"}
+#: Braces are parentheses: e^{-4t}.
+_BRACES = str.maketrans("{}", "()")
 _CALL = re.compile(r"[ \t\r\n]*\(")
 _POWER = re.compile(r"[ \t\r\n]*(?:\*\*|\^)")
 
@@ -157,6 +172,8 @@ class Tokeniser:
         self.symbols: dict[str, Scalar] = {}
         self.unknown: list[InputError] = []
         self.spaced = False
+        #: Where the text goes on after the present token: behind the argument that it has taken.
+        self.ahead = 0
         #: Of each open bracket, whether commas set the entries of its present row apart.
         self.commas: list[bool] = []
 
@@ -170,18 +187,7 @@ class Tokeniser:
 
         All names that are not declared are told together, at the end.
         """
-        position = 0
-        while position < len(self.text):
-            if self.scope.poles and (unit := self.scope.unit_first(self.text, position)):
-                self._unit_first(unit, position)
-                position = unit.end()
-                continue
-            match = self.pattern.match(self.text, position)
-            if match is None:
-                message, repair = _unreadable(self.text[position])
-                raise self.source.error(message, position, repair)
-            self._take(str(match.lastgroup), match.group(), position)
-            position = match.end()
+        self._read(0, len(self.text))
         if self.open:
             place, repair = self.open[-1].start, f'close it with "{_CLOSING[self.open[-1]]}"'
             raise self.source.error(f'this "{self.open[-1]}" is never closed', place, repair)
@@ -192,6 +198,21 @@ class Tokeniser:
         if self.unknown:
             raise self.unknown[0] if len(self.unknown) == 1 else ProblemErrors(tuple(self.unknown))
         return self.tokens
+
+    def _read(self, position: int, end: int) -> None:
+        """Take the tokens of a part of the text; what was taken ahead is passed over."""
+        while position < end:
+            if self.scope.poles and (unit := self.scope.unit_first(self.text, position)):
+                self._unit_first(unit, position)
+                position = unit.end()
+                continue
+            match = self.pattern.match(self.text, position)
+            if match is None:
+                message, repair = _unreadable(self.text[position])
+                raise self.source.error(message, position, repair)
+            self.ahead = match.end()
+            self._take(str(match.lastgroup), match.group(), position)
+            position = self.ahead
 
     def _take(self, kind: str, text: str, at: int) -> None:
         if kind == "SPACE":
@@ -206,11 +227,13 @@ class Tokeniser:
                 self._refuse_leading_zero(text, at)
                 self._add("VALUE", text, at, self._decimal(text, at))
             case "NAME":
-                self._name(text if text.isascii() else self._spelt(text), at, at + len(text))
+                self._name(text if NAME.fullmatch(text) else self._spelt(text), at, at + len(text))
             case "OPEN":
-                self._open(text, at)
+                self._open(text.translate(_BRACES), at)
             case "CLOSE":
-                self._close(text, at)
+                self._close(text.translate(_BRACES), at)
+            case "UNIT":
+                self._unit(text, at)
             case "RAISED":
                 self._raised(ascii_of(text), at)
             case "ROOT":
@@ -338,6 +361,16 @@ class Tokeniser:
             instead = f"decimals have a point: {whole[1]}.{text}" if whole else f"write {text.lstrip('0') or '0'}"
             raise self.source.error(message, at, instead)
 
+    def _unit(self, unit: str, at: int) -> None:
+        """Take a number of degrees as an angle in radians, or of per cent as a fraction."""
+        last = self.tokens[-1] if self.tokens else None
+        if last is None or last.type != "VALUE" or not isinstance(last.value, Scalar) or not last.value.is_constant:
+            raise self.source.error(f'"{unit}" belongs behind a number', at, "write 30° or 5 %")
+        if unit == "°" and not self.scope.functions:
+            raise self.source.error("an angle in degrees stands where no angle is asked for", at, "write a number")
+        value = last.value / 100 if unit == "%" else last.value * Scalar.symbol(PI) / 180
+        self.tokens[-1] = Token("VALUE", last, last.start, value)
+
     def _raised(self, power: str, at: int) -> None:
         """Add a power that is written above the line."""
         self._add("POWER", "^", at)
@@ -375,16 +408,74 @@ class Tokeniser:
         called = self.text.startswith("(", end) if self._in_brackets() else bool(_CALL.match(self.text, end))
         if self.scope.is_imaginary_unit(name):
             self._add("VALUE", name, at, Complex(Scalar.of(0), Scalar.of(1)))
+        elif called and name in CONSTRUCTORS and not self.scope.declares(name):
+            self._constructed(name, at, end)
+        elif (
+            name == "e"
+            and self.scope.functions
+            and not self.scope.declares(name)
+            and (power := _EXP.match(self.text, end))
+        ):
+            self._add("FUNCTION", "exp", at)
+            self.ahead = power.end()
         elif name not in FUNCTIONS:
             self._add("VALUE", name, at, self.symbols.get(name) or self._symbol(name, at, called=called))
         elif called:
             self._add("FUNCTION", name, at)
+        elif self.scope.functions and (
+            argument := (_BARE_IN_BRACKETS if self._in_brackets() else _BARE).match(self.text, end)
+        ):
+            self._add("FUNCTION", name, at)
+            self._grouped(*argument.span(1))
+            self.ahead = argument.end()
         else:
             raise self.source.error(f'"{name}" is a function', at, f"write its argument in parentheses: {name}( )")
+
+    def _grouped(self, start: int, end: int) -> None:
+        """Take a part of the text as if it stood in parentheses."""
+        self._open("(", start)
+        self._read(start, end)
+        self._close(")", end)
+
+    def _constructed(self, name: str, at: int, end: int) -> None:
+        """Write out diag(1, 10), eye(2), zeros(2, 1) and ones(2, 1) as matrices."""
+        found = _ARGUMENTS.match(self.text, end)
+        if found is None:
+            raise self.source.error(f"{name}( ) is not closed", at, f"write {CONSTRUCTORS[name]}")
+        listed = found[1].strip()
+        if name == "diag":
+            start = found.start(1) + found[1].index(listed)
+            if listed[:1] == "[" and listed[-1:] == "]":
+                listed, start = listed[1:-1], start + 1
+            entries = [(start + part.start(), start + part.end()) for part in _PART.finditer(listed)]
+            rows = columns = len(entries)
+        else:
+            sizes = [int(size) for size in re.findall(r"[0-9]+", listed)]
+            if not _SIZES.fullmatch(listed) or max(sizes) > _MOST_SIZE:
+                message = f"{name}( ) takes numbers of rows and columns"
+                raise self.source.error(message, at, f"write {CONSTRUCTORS[name]}")
+            entries, (rows, columns) = [], (sizes * 2)[:2]
+        self._open("[", at)
+        for i in range(rows):
+            for j in range(columns):
+                if j:
+                    self._add("_COMMA", ",", at)
+                if i == j and entries:
+                    self._grouped(*entries[i])
+                else:
+                    self._add("VALUE", "0", at, Scalar.of(int(name == "ones" or (name == "eye" and i == j))))
+            if i + 1 < rows:
+                self._add("_END", ";", at)
+        self._close("]", at)
+        self.ahead = found.end()
 
     def _symbol(self, name: str, at: int, *, called: bool) -> Scalar:
         """Return the symbol `name`; raises the error with the reason if there is none."""
         self._require_product(name, at)
+        variable = self.scope.variable
+        is_free = name in EIGENVALUES and not self.scope.declares(name)
+        if is_free and variable and variable not in NAME.findall(self.text):
+            return self._symbol(variable, at, called=called)
         if name == PI and (self.scope.functions or self.open):  # what it is an argument of takes it, or refuses it
             return Scalar.symbol(PI)
         reasons = refusal(name)

@@ -1,5 +1,6 @@
 """What the keywords of a task may contain, and the desired polynomial of a design."""
 
+from symobs.system.specification.as_printed import as_typed
 from symobs.system.specification.keywords import (
     CHOICES,
     KINDS,
@@ -58,6 +59,7 @@ __all__ = [
     "SignalText",
     "TimeFunctions",
     "TransferFunctionText",
+    "as_typed",
     "constant",
     "desired_polynomial",
     "from_list",

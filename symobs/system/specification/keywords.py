@@ -30,13 +30,15 @@ from symobs.formula.expression import (
     parse_matrix,
     parse_poles,
     parse_polynomial,
+    right_side,
     without_comma,
 )
+from symobs.formula.expression.tokenizer import CONSTRUCTORS
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.system import Matrices, StateSpace, Symbols, is_sympy, read_complex, read_matrix, read_scalar
 from symobs.system.conditions import sign_of
-from symobs.system.reading import as_rows, require_known
+from symobs.system.reading import VECTOR, as_rows, require_known
 from symobs.system.specification.pole_patterns import (
     FILTERS,
     KEYS,
@@ -364,6 +366,7 @@ def _factors_of_pairs(poles: tuple[Complex, ...], variable: str, where: str) -> 
 
 def _from_polynomial(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:
     variable = plant.variable
+    value = right_side(value) if isinstance(value, str) else value
     if is_pattern(value):
         key = where.rpartition(".")[2].replace("polynomial", "poles")
         message = f"an expression in {variable} is expected, but what poles are to do came"
@@ -395,14 +398,14 @@ def _monic_factors(polynomial: Scalar, variable: str) -> tuple[Scalar, ...]:
     return tuple(sorted(factors, key=lambda f: f.degree(variable)))
 
 
-#: A vector in parentheses: (1, 0).
-_VECTOR = re.compile(r"\s*\(([^()]*)\)\s*")
+#: A matrix by a word.
+_MADE = re.compile(rf"(?<!\w)(?:{'|'.join(CONSTRUCTORS)})\s*\(")
 
 
 def from_list(value: Any, *, column: bool) -> Any:
     """Return a flat list, or the text of one, as a column or a row, anything else as it is."""
-    if isinstance(value, str) and "[" not in value and "," in value:
-        entries = _VECTOR.fullmatch(value)
+    if isinstance(value, str) and "[" not in value and "," in value and not _MADE.search(value):
+        entries = VECTOR.fullmatch(value)
         inside = entries[1] if entries else value
         return f"[{inside.replace(',', ';') if column else inside}]"
     return as_rows("B" if column else "C", value)
@@ -412,6 +415,10 @@ def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int
     """Return a given gain, a flat list where it is a row or a column; raises ShapeMismatch for another shape."""
     where = f"specification.{name}"
     gain = read_matrix(from_list(value, column=shape[1] == 1), plant.symbols.seen(value), where, functions=True)
+    if shape[1] == 1 and gain.shape == (1, shape[0]):  # a column that is written as a row, or 0 for all of it
+        gain = gain.T
+    elif shape[1] == 1 and gain == Matrix.zeros(1, 1):
+        gain = Matrix.zeros(*shape)
     if gain.shape != shape:
         message = f"{name} is {gain.shape[0]}×{gain.shape[1]}, expected {shape[0]}×{shape[1]}"
         raise ShapeMismatch(message, where=where, repair=f"write {name} as a {shape[0]}×{shape[1]} matrix")
@@ -470,7 +477,7 @@ def read_names(value: object, name: str) -> tuple[str, ...]:
 def read_interval(value: object, plant: StateSpace) -> tuple[Scalar, Scalar]:
     """Return the two ends of a time interval; raises `InputError` unless they are real, free of t and in order."""
     where = "specification.interval"
-    ends = read_poles(value, plant.symbols, where, functions=False)
+    ends = read_poles(value, plant.symbols, where)
     if len(ends) != 2 or not all(end.is_real for end in ends):
         message = f"an interval has two real ends, but {len(ends)} came"
         raise InputError(message, where=where, repair='write for example interval = "0, T"')

@@ -17,6 +17,7 @@ from symobs.exact.algebraic.real_algebraic import roots_of_scalar
 from symobs.exact.algebraic.rounded_decimals import is_in_kernel
 from symobs.exact.core.generators import PI, NotWritten, function, symbols_in
 from symobs.exact.time_functions.antiderivative import butterworth, butterworth_angles
+from symobs.formula.expression import without_pole_names
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.system.conditions import sign_of
@@ -29,6 +30,9 @@ OTHERS, OVERSHOOT = "others", "overshoot"
 PAIRS = (("damping", "natural_frequency"), ("damping", "settling_time"), ("settling_time", "overshoot"))
 FILTERS = ("butterworth", "bessel", "itae")
 KEYS = (*dict.fromkeys(name for pair in PAIRS for name in pair), *FILTERS, OTHERS)
+#: The letters of books.
+_OF_BOOKS = dict.fromkeys(("zeta", "ζ"), "damping") | dict.fromkeys(("t_s", "T_s"), "settling_time")
+_OF_BOOKS |= dict.fromkeys(("omega_n", "ω_n", "ωn", "omega_0", "ω_0", "ω₀", "w_n", "wn"), "natural_frequency")
 #: The highest degree of a Butterworth polynomial whose coefficients are written with one root.
 MOST_OF_ONE_ROOT = 12
 #: After 4/σ a mode with the real part −σ has decayed to exp(−4), less than 2 %.
@@ -67,12 +71,13 @@ class PolePattern:
 
 def is_pattern(value: object) -> bool:
     """Return whether poles are given by what they are to do."""
-    return isinstance(value, Mapping) or (isinstance(value, str) and "=" in value)
+    return isinstance(value, Mapping) or (isinstance(value, str) and "=" in without_pole_names(value))
 
 
 def named_parts(value: Any, where: str) -> dict[str, Any]:
     """Return what is given by name; raises `InputError` for a name that is not known and for what does not go together."""
-    parts = _parts_of_text(value, where) if isinstance(value, str) else dict(value)
+    given = _parts_of_text(value, where) if isinstance(value, str) else dict(value)
+    parts = {_OF_BOOKS.get(name, name): part for name, part in given.items()}
     unknown = [str(name)[:40] for name in parts if name not in KEYS]
     if unknown:
         raise InputError(f"poles have no {unknown[0]!r}", where=where, repair=f"known names are {', '.join(KEYS)}")

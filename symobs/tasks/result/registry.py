@@ -12,6 +12,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, SymobsError, Undecided
 from symobs.proof.certificate.claims import BEYOND_LIMITS
 from symobs.system import StateSpace, as_plant, read_floats
+from symobs.system.specification import as_typed
 from symobs.tasks.result.result import Result
 from symobs.tasks.result.writers import discover, import_named
 
@@ -97,7 +98,8 @@ def _of_plants(function: Callback) -> Callback:
     """Wrap a task to accept plants of other programs, and floats on request."""
     signature = inspect.signature(function).parameters
     only = signature["plant"].default is not None
-    words = [name for name, given in signature.items() if name != "plant" and _kind(given.annotation) == "Name"]
+    kinds = {name: _kind(given.annotation) for name, given in signature.items() if name != "plant"}
+    words = [name for name, kind in kinds.items() if kind == "Name"]
 
     @wraps(function)
     def reading(*arguments: Any, floats: str | None = None, **keywords: Any) -> Result:
@@ -110,6 +112,9 @@ def _of_plants(function: Callback) -> Callback:
                 message = f"a name is expected, but a value of type {type(keywords[name]).__name__} came"
                 raise InputError(message, where=f"specification.{name}", repair="write it in quotes")
         came = {name: value for name, value in keywords.items() if name != "plant" and value is not None}
+        plant = arguments[0] if arguments else keywords.get("plant")
+        known = plant if isinstance(plant, StateSpace) else None
+        came = {name: as_typed(name, kinds.get(name, ""), value, known) for name, value in came.items()}
         asked = {name: read_floats(value, floats, f"specification.{name}") for name, value in came.items()}
         try:
             result: Result = function(*arguments, **keywords | asked)

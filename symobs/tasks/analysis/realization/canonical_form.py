@@ -7,6 +7,7 @@ The modal form is block diagonal: numbers, Jordan blocks, [σ ω; −ω σ], com
 
 from __future__ import annotations
 
+from difflib import get_close_matches
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -353,8 +354,9 @@ def canonical_form(
         return in_coordinates(plant, given_T)
     kind = kind or "controllable"
     if kind not in KINDS:
-        message = f"{str(kind)[:40]!r} is not a canonical form"
-        raise InputError(message, where="specification.kind", repair=f"write one of {', '.join(KINDS)}")
+        message, near = f"{str(kind)[:40]!r} is not a canonical form", get_close_matches(str(kind)[:40], KINDS, 1)
+        question = f"did you mean {near[0]}? " if near else ""
+        raise InputError(message, where="specification.kind", repair=f"{question}write one of {', '.join(KINDS)}")
     if kind != "modal":
         part, count, name = ("B", plant.inputs, "inputs") if kind == "controllable" else ("C", plant.outputs, "outputs")
         plant.require(part, task="canonical_form")

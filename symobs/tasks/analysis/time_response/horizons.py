@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Matrix, Scalar, modulo, remainder
-from symobs.exact.core.generators import NotWritten, all_roots, derivative, function_named
+from symobs.exact.core.generators import NotWritten, all_roots, derivative, function, function_named, functions_in
 from symobs.exact.time_functions.quasipolynomial import Table, table_of
 from symobs.formula.expression import parse_scalar
 from symobs.ground.errors import InputError
@@ -214,9 +214,22 @@ def read_functions(value: object, plant: StateSpace, name: str, count: int) -> t
     if any("t" in root.argument.names for root in all_roots(found)):
         raise InputError(f"the {name} contains a root of t", where=where, repair=repair)
     try:
+        found = _without_phases(found)
         sums = table_of(found)
-    except ValueError as error:
+    except (ValueError, NotWritten) as error:
         raise InputError(str(error), where=where, repair=repair) from None
     if sum(len(entry.terms) for row in sums for entry in row) > _MOST_TERMS:
         raise InputError("the functions have too many terms", where=where, repair=f"keep to {_MOST_TERMS} terms")
     return found, sums
+
+
+def _without_phases(value: Matrix) -> Matrix:
+    """Return sin(ωt + φ) as sin ωt cos φ + cos ωt sin φ, and the cosine likewise; raises `NotWritten`."""
+    found: dict[str, Scalar] = {}
+    for f in functions_in([value]):
+        phase = f.argument.substitute({"t": Scalar.of(0)}) if f.kind in {"sin", "cos"} else Scalar.of(0)
+        if phase.is_zero or phase == f.argument:
+            continue
+        (s, c), (p, q) = ([function(kind, part) for kind in ("sin", "cos")] for part in (f.argument - phase, phase))
+        found[f.name] = s * q + c * p if f.kind == "sin" else c * q - s * p
+    return value.substitute(found) if found else value
