@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.audit.auditor import EquationAuditor, printed_entries
-from symobs.applications.audit.differences import as_matrix, wrong_entries
+from symobs.applications.audit.differences import Reason, WrongEntries, as_matrix, wrong_entries
 from symobs.applications.audit.evaluation import Misfit, common, equal, value_of
 from symobs.applications.audit.slips import SearchBudget
 from symobs.applications.checking.answers import Answer, Step, as_value, read_like
@@ -52,58 +52,9 @@ if TYPE_CHECKING:
 # The auditor of a derivation's lines: that of printed equations, with the student's values in place of letters.
 
 
-#: A right value beside the one that was written, and the slip from one to the other.
-_BESIDE = re.compile(r"(.+?) is .+, not [^:]+(?:: (.+))?")
-_PART = re.compile(r"(?:in )?(?:entry|the coefficient|the constant term)\b")
-#: A term with its right coefficient, or with what a student's letters make of it: its signal alone is a place.
-_TERM = re.compile(r"the term (?:.* )?-?(\S+) (is missing|does not belong there)")
-_MORE = re.compile(r"and [0-9]+ more entr(?:y|ies)")
-
-
-#: What is wrong with a value as a whole, in words that have no right value in them.
-_CAUSE = re.compile(
-    r"(?:in the coefficient of \S+ )?"
-    r"(?:all signs are wrong|the (?:transpose|inverse) is printed|every entry is multiplied by \S+"
-    r"|the (?:entries|rows|columns) [(),0-9 ]+ and [(),0-9 ]+ are exchanged)"
-    r"|the eigenvalues are others"
-)
-
-
-_BETWEEN_PIECES = re.compile(r"; (?![^\[]*\])")
-
-
-def without_solution(reason: str, *, is_gain: bool = False) -> str:
-    """Return why a line is false without what is right: one wrong entry or coefficient is told, of several the places.
-
-    A value that is wrong as a whole has its slip for a reason, or none; so has a gain, which may be right in other places.
-    Of what has none of the known wordings nothing is told.
-    """
-    pieces = _BETWEEN_PIECES.split(reason)
-    beside = [found for piece in pieces if (found := _BESIDE.fullmatch(piece)) and not _TERM.fullmatch(piece)]
-    if len(pieces) == len(beside) == 1:
-        return reason if _PART.match(beside[0][1]) else beside[0][2] or ""
-    causes = [piece for piece in pieces if _CAUSE.fullmatch(piece)]
-    if causes or is_gain:
-        return "; ".join(causes)
-    places = [found[1] for found in beside if _PART.match(found[1])]
-    places += [piece for piece in pieces if places and _MORE.fullmatch(piece)]
-    terms = [f"a term in {found[1]} {found[2]}" for piece in pieces if (found := _TERM.fullmatch(piece))]
-    return "; ".join([*([f"not right: {', '.join(places)}"] if places else []), *terms])
-
-
-def place_alone(reason: str) -> str:
-    """Return the reason for a matrix with one entry at most, of which a right entry may be all that there is to find."""
-    return re.sub(r"^(entry \([0-9]+, [0-9]+\)) is [^;]*$", r"\1 is wrong", reason)
-
-
 @dataclass(frozen=False)
 class LineAuditor(EquationAuditor):
-    """An auditor that tells whether a line is true, and what it defines.
-
-    What is said in the letters and numbers of the line itself, of slips and of sizes, is `harmless`: it gives nothing away.
-    """
-
-    harmless: set[str] = field(init=False, default_factory=set)
+    """An auditor that tells whether a line is true, and what it defines."""
 
     def members(self, entry: PrintedEntry) -> tuple[SyntaxNode, ...]:
         """Return the members of a line, its conditions and its own letters being set."""
@@ -147,33 +98,9 @@ class LineAuditor(EquationAuditor):
         """Return the letters of a line."""
         return {*letters_of(*self.members(entry), *self.let.values())}
 
-    def explained(self, entry: PrintedEntry, *, is_gain: bool) -> tuple[str, str]:
-        """Return the correction of a false line and the reason without it, empty where none is found."""
-        for _, verdict in self.read(entry):
-            if not verdict.holds:
-                said = verdict.reason
-                return verdict.right, said if said in self.harmless else without_solution(said, is_gain=is_gain)
-        return "", ""
-
-    def _slip(self, *sides: Any, **options: Any) -> tuple[str, str] | None:
-        return self._noted(super()._slip(*sides, **options))
-
-    def _misfit(self, *sides: Any) -> tuple[str, str]:
-        found = super()._misfit(*sides)
-        self._noted(found)
-        return found
-
-    def _missing_factor(self, *sides: Any) -> tuple[str, str] | None:
-        return self._noted(super()._missing_factor(*sides))
-
-    def _missing_term(self, *sides: Any) -> tuple[str, str] | None:
-        return self._noted(super()._missing_term(*sides))
-
-    def _noted(self, found: tuple[str, str] | None) -> tuple[str, str] | None:
-        """Return a correction, its reason being noted as harmless."""
-        if found is not None:
-            self.harmless.add(found[1])
-        return found
+    def explained(self, entry: PrintedEntry) -> tuple[str, Reason]:
+        """Return the correction of a false line, empty where none is found, and the reason."""
+        return next(((v.right, v.reason) for _, v in self.read(entry) if not v.holds), ("", Reason()))
 
 
 def auditor(
@@ -229,8 +156,8 @@ def _of_member(step: Step, name: str, member: str, view: ResultInConvention) -> 
     if own.shape != exact.shape:
         rows, columns = (f"{a}x{b}" for a, b in (exact.shape, own.shape))
         return Line(step.where, step.relation, "false", reason=f"{name} is {rows} here, yours is {columns}")
-    wrong = wrong_entries(own, exact, whole=name)
-    reason = without_solution("; ".join(map(str, wrong))) or "its sides are not equal"
+    wrong = Reason((WrongEntries(tuple(wrong_entries(own, exact, whole=name))),))
+    reason = wrong.hint() or "its sides are not equal"
     return Line(step.where, step.relation, "false", right=f"{name} = {right}", reason=reason)
 
 
@@ -496,12 +423,12 @@ def _not_true(
         desk = own
     is_gain = defined is not None and state.is_gain(defined[0])
     try:
-        corrected, reason = desk.explained(entry, is_gain=is_gain)
+        corrected, why = desk.explained(entry)
     except (CertificateRejected, *UNREADABLE):  # the search for the cause found none that stands
-        corrected, reason = "", ""
-    if defined is not None and isinstance(defined[1], Matrix) and sum(not x.is_zero for x in defined[1].entries) < 2:
-        reason = place_alone(reason)
-    reason = reason or ("" if is_gain else "its sides are not equal")
+        corrected, why = "", Reason()
+    matrix = defined[1] if defined is not None else None
+    is_alone = isinstance(matrix, Matrix) and sum(not x.is_zero for x in matrix.entries) < 2
+    reason = why.hint(is_gain=is_gain, is_alone=is_alone) or ("" if is_gain else "its sides are not equal")
     if desk is not right:
         reason = ", ".join(filter(None, (reason, _with_own(state, entry, right, corrected))))
     if defined is not None:

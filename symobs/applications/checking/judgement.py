@@ -24,7 +24,8 @@ from symobs.applications.checking.parts import (
 )
 from symobs.applications.checking.regions import region_verdict
 from symobs.applications.checking.rounded import entries_are_right, in_enough_digits, is_as_stable, poles_are_right
-from symobs.applications.checking.wording import VERDICTS, verdict_of
+from symobs.applications.checking.wording import verdict_of
+from symobs.applications.grader.claims import WORDS as VERDICTS
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.exact.core.generators import functions_in
 from symobs.formula.expression import parse_matrix, without_comma
