@@ -293,7 +293,7 @@ class ExerciseSet:
     @property
     def name(self) -> str:
         """A name for files and folders: letters, digits and `_` of the title, and the identifier."""
-        plain = "".join(c if c.isascii() and c.isalnum() else "_" for c in self.first.title.lower())
+        plain = "".join(c if c.isascii() and c.isalnum() else "_" for c in self.title.lower())
         words = "_".join(filter(None, plain.split("_")))[:40].strip("_")
         return f"{words or 'question'}_{self.identifier}"
 
@@ -316,7 +316,8 @@ def exercises(
         except InputError as error:
             errors += _named(error, path, several=len(paths) > 1)
             continue
-        found.append((exercise.structure if is_variant else exercise.structure + exercise.title, exercise))
+        named = str(path.parent.resolve()) if is_variant else exercise.title
+        found.append((exercise.structure + named, exercise))
     if errors:
         raise ProblemErrors(tuple(errors))
     return tuple(
@@ -346,9 +347,9 @@ def problem_files(sources: Sequence[str]) -> list[tuple[Path, bool]]:
         if path.name == MANIFEST:
             path = path.parent
         if not path.is_dir():
-            found.append((path, False))
+            found.append((path, _is_of_manifest(path.parent)))
             continue
-        is_variant = (path / MANIFEST).is_file()
+        is_variant = _is_of_manifest(path)
         folder = path / "variants" if is_variant and (path / "variants").is_dir() else path
         files = sorted(each for each in folder.iterdir() if each.suffix in {".toml", ".json"} and each.name != MANIFEST)
         files = [each for each in files if each.name != "sheet.toml"] if is_variant else files
@@ -360,6 +361,12 @@ def problem_files(sources: Sequence[str]) -> list[tuple[Path, bool]]:
         message = f"{len(found)} problems, more than {MOST_PROBLEMS}"
         raise InputError(message, where="SOURCE", repair="export them in several runs")
     return found
+
+
+def _is_of_manifest(folder: Path) -> bool:
+    """Return whether a folder holds the variants of a manifest, in it or beside it."""
+    folder = folder.resolve()
+    return any((each / MANIFEST).is_file() for each in (folder, *[folder.parent] * (folder.name == "variants")))
 
 
 def _text(path: Path) -> str:
