@@ -259,7 +259,8 @@ def _exchanged(view: ResultInConvention, judgement: TaskJudgement, judged: Judge
 def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> Explained:
     """Return why a value is wrong, as far as it is a matrix or a number."""
     if judged.value is None:
-        return Explained()
+        said = "the values are rounded, and exact ones are asked for"
+        return Explained("rounded", said) if judged.rounded else Explained()
     is_part = view.result.gains_are_one
     if is_part and view.standard(judged.letter)[1] < 0:
         return Explained()  # what is said of a value has its standard sign

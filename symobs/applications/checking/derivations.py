@@ -7,17 +7,26 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import field, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from symobs.applications.audit.auditor import EquationAuditor, printed_entries
 from symobs.applications.audit.differences import Reason, WrongEntries, as_matrix, wrong_entries
 from symobs.applications.audit.evaluation import Misfit, common, equal, value_of
 from symobs.applications.audit.slips import SearchBudget
-from symobs.applications.checking.answers import Answer, Step, as_value, read_like
+from symobs.applications.checking.answers import Answer, Step, as_value, has_decimals, read_like
 from symobs.applications.checking.handwriting import EIGENVALUES, in_letters, named_entries
 from symobs.applications.checking.parts import OF_THE_PLANT, exists, field_called, is_of_time
-from symobs.applications.checking.regions import SOME_PIECES, compare, part_described, read_conditions
+from symobs.applications.checking.regions import (
+    SOME_PIECES,
+    compare,
+    conditions_on,
+    is_implied,
+    part_described,
+    read_conditions,
+    rounded_on,
+)
 from symobs.applications.checking.report import Line
+from symobs.applications.checking.rounded import rounds_a_root
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.exact.algebraic.rounded_decimals import polynomial_of
 from symobs.formula.expression import parse_poles
@@ -43,9 +52,11 @@ if TYPE_CHECKING:
 
     from symobs.applications.audit.auditor import PrintedEntry
     from symobs.applications.checking.judgement import TaskJudgement
+    from symobs.applications.checking.regions import Union
     from symobs.formula.convention import Convention
     from symobs.problem import Problem
     from symobs.problem.fields import Milestone
+    from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
     from symobs.tasks.result import Result
 
 
@@ -363,9 +374,12 @@ def _of_an_eigenvalue(state: _Derivation, step: Step, names: Collection[str]) ->
         known = [value for result in state.right.values() for value in _polynomials(result)]
     except (InputError, ValueError, TypeError, TooLarge):
         return None
-    is_one = any((polynomial / factor).is_polynomial_in(variable) for polynomial in known)
-    reason = "" if is_one else "this is no eigenvalue here"
-    return Line(step.where, step.relation, "true" if is_one else "false", reason=reason)
+    is_one, reason = any((polynomial / factor).is_polynomial_in(variable) for polynomial in known), ""
+    if not is_one and has_decimals(found[2]) and any(rounds_a_root(found[2], each, variable) for each in known):
+        is_one, reason = state.problem.marking.decimals == "accept", "this is rounded, and an exact value is asked for"
+    elif not is_one:
+        reason = "this is no eigenvalue here"
+    return Line(step.where, step.relation, "true" if is_one else "false", reason="" if is_one else reason)
 
 
 def _polynomials(result: Result) -> Iterator[Scalar]:
@@ -463,19 +477,27 @@ def _of_conditions(state: _Derivation, step: Step) -> Line:
     names = names_of(view)
     known = None if names is None else {**dict.fromkeys(view.result.question.parameters, "real"), **names}
     try:
-        union = read_conditions(step.relation, known, step.where)
-        ours = read_conditions(list(view.result.fields["stable_if"]), known)
-        both = tuple((*mine, *theirs) for mine in ours for theirs in union)
-        found = compare(view.result, both)  # type: ignore[arg-type]
-        part = part_described(view.result, union) if found.verdict == "wrong" else ""  # type: ignore[arg-type]
+        region, marking = cast("StabilityRegion", view.result), state.problem.marking
+        if marking.decimals == "accept" and has_decimals(step.relation):
+            union = rounded_on(region, step.relation, known, marking.digits, step.where)
+        else:
+            union = conditions_on(region, step.relation, known, step.where)
+        verdict = _of_union(region, union, known)
+        part = part_described(region, union) if verdict == "false" else ""
     except _OPEN as error:
         return Line(step.where, step.relation, "undecided", reason=str(error))
     except SymobsError as error:
         return Line(step.where, step.relation, "unreadable", reason=_without_place(error))
-    verdict = {"right": "true", "wrong": "undecided" if part == SOME_PIECES else "false"}.get(
-        found.verdict, "undecided"
-    )
-    return Line(step.where, step.relation, verdict, reason=part)
+    return Line(step.where, step.relation, "undecided" if part == SOME_PIECES else verdict, reason=part)
+
+
+def _of_union(region: StabilityRegion, union: Union, known: Mapping[str, str] | None) -> str:
+    """Return whether a region implies conditions, as the verdict on a line."""
+    if region.region is not None:
+        return "true" if is_implied(region, union) else "false"
+    ours = read_conditions(list(region.fields["stable_if"]), known)
+    found = compare(region, tuple((*mine, *theirs) for mine in ours for theirs in union))
+    return {"right": "true", "wrong": "false"}.get(found.verdict, "undecided")
 
 
 def _is_met(milestone: Milestone, lines: Sequence[Line], right: set[str]) -> bool:
