@@ -15,7 +15,7 @@ from symobs.applications.audit.evaluation import Misfit, common, equal, value_of
 from symobs.applications.audit.slips import SearchBudget
 from symobs.applications.checking.answers import Answer, Step, as_value, has_decimals, read_like
 from symobs.applications.checking.handwriting import EIGENVALUES, in_letters, named_entries
-from symobs.applications.checking.parts import OF_THE_PLANT, exists, field_called, is_of_time
+from symobs.applications.checking.parts import OF_THE_PLANT, exists, field_called, is_of_time, part_of_task
 from symobs.applications.checking.regions import (
     SOME_PIECES,
     compare,
@@ -29,7 +29,7 @@ from symobs.applications.checking.report import Line
 from symobs.applications.checking.rounded import rounds_a_root
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.exact.algebraic.rounded_decimals import polynomial_of
-from symobs.formula.expression import parse_poles
+from symobs.formula.expression import parse_poles, parse_scalar
 from symobs.formula.expression.syntax import SyntaxNode, letters_of
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import (
@@ -44,6 +44,7 @@ from symobs.ground.errors import (
 from symobs.problem.expect import found_in, met, names_of
 from symobs.proof.certificate.claims import UNREADABLE
 from symobs.tasks.analysis.rank.observability import controllability_rank, observability_rank
+from symobs.tasks.analysis.time_response.initial_state import InitialState
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
@@ -322,6 +323,10 @@ def _states_a_part(step: Step, answer: Answer, views: Sequence[ResultInConventio
     given = [entry.get(letter) for entry in (answer.values, *answer.values.values()) if isinstance(entry, Mapping)]
     if letter in chosen:
         return value in given
+    if answer.loose and part_of_task(letter, views) is not None:
+        return True
+    if len(answer.repeated.get(letter, ())) == sum(exists(view.result, letter) for view in views) > 1:
+        return value in answer.repeated[letter]  # P of lqr, P of kalman
     return letter in OF_THE_PLANT and value in given and any(exists(view.result, letter) for view in views)
 
 
@@ -354,8 +359,36 @@ def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
         return _of_conditions(state, step)
     if (line := _of_an_eigenvalue(state, step, names)) is not None:
         return replace(line, relation=written)
+    if (line := _of_a_measurement(state, step)) is not None:
+        return replace(line, relation=written)
     of_time = of_function_of_time(step, state.views, lambda member: _audited(state, member, answer))
     return replace(of_time or _audited(state, step, answer), relation=written)
+
+
+_OUTPUT = re.compile(r"\s*(?:y|(ẏ))(?:_?(\d))?\s*('*)\s*\(\s*([^()=]+?)\s*\)\s*=\s*([^=]+)")
+
+
+def _of_a_measurement(state: _Derivation, step: Step) -> Line | None:
+    """Return whether a line y(0) = 3 or y'(0) = -1 says what was measured; None for any other line, or where nothing was."""
+    found = _OUTPUT.fullmatch(step.relation)
+    result = next((each for each in state.right.values() if isinstance(each, InitialState)), None)
+    if found is None or result is None:
+        return None
+    names = names_of(ResultInConvention(result, state.views[0].convention))
+    try:
+        at = parse_scalar(found[4], names, where=step.where, functions=True)
+        value = result.measured(at, len(found[3]) + bool(found[1]))
+        if value is None:
+            return None
+        right: Any = value if found[2] is None and value.shape[0] > 1 else value[int(found[2] or 1) - 1, 0]
+        mine = read_like(right, as_value(found[5]), names, "t", step.where)
+        assert mine is not None  # noqa: S101 - the right one is a matrix or a number
+        own, exact = as_matrix(mine), as_matrix(right)
+    except (*_OPEN, IndexError, SymobsError):
+        return None
+    is_true = own.shape == exact.shape and not wrong_entries(own, exact)
+    reason = "" if is_true else "this was not measured"
+    return Line(step.where, step.relation, "true" if is_true else "false", reason=reason)
 
 
 _NUMBERED = re.compile(rf"\s*((?:{EIGENVALUES})_?\d)\s*=\s*([^=]+)")
