@@ -181,6 +181,10 @@ def _compensator(view: ResultInConvention, made: dict[str, Any]) -> ExportedPart
     return _part(data, ((value,),), 0)
 
 
+#: A number with square roots, as a text.
+_OF_ROOTS = re.compile(r"(?:sqrt|[0-9+\-*/() ])+")
+
+
 # -- other values -----------------------------------------------------------------------------------------------------
 
 
@@ -201,10 +205,12 @@ def _value(view: ResultInConvention, field: str, made: dict[str, Any]) -> Export
         raise _refused(made["part"], "this is no matrix and no number")
     rows = matrix.rows if matrix is not None else ((Scalar.of(value),),)
     entries = [entry for row in rows for entry in row]
-    _require_rational(view, made["part"], entries, made["variable"])
+    roots = [entry for entry in entries if entry.names and _OF_ROOTS.fullmatch(str(entry))]
+    _require_rational(view, made["part"], [entry for entry in entries if entry not in roots], made["variable"])
     function = any(made["variable"] in entry.names for entry in entries)
     data = made | {"kind": "value", "function": function, "exact": whole, "right": texts(rows)}
-    data["symbolic"] = _has_symbols(entries, made["variable"])
+    data["symbolic"] = _has_symbols([entry for entry in entries if entry not in roots], made["variable"])
+    data |= {"roots": True} if roots else {}
     return _part(data, tuple(map(tuple, rows)))
 
 
@@ -609,6 +615,7 @@ def instruction(part: ExportedPart, entries: str = "export_entries") -> str:
     rows, columns = part.shape
     if part.kind == "word":
         return PHRASES["export_word"]
+    entries = "export_roots" if part.data.get("roots") else entries
     said = PHRASES["export_function"].format(variable=part.data["variable"]) if part.is_function else PHRASES[entries]
     if (rows, columns) != (1, 1):
         said = f"{PHRASES['export_size'].format(rows=rows, columns=columns)} {said}"

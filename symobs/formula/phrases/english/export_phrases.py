@@ -5,6 +5,7 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "export_size": "Enter the {rows} by {columns} matrix entry by entry.",
     "export_entries": "Give exact values, integers or fractions such as 1/3.",
+    "export_roots": "Give exact values: integers, fractions such as 1/3, or roots such as sqrt(2).",
     "export_decimals": "Give exact values, integers or decimals.",
     "export_integers": "Give integers.",
     "export_function": "Enter an exact expression in {variable}; products may be written with * and powers with ^.",

@@ -12,11 +12,14 @@ from xml.etree.ElementTree import Element, fromstring
 
 import pytest
 
-from symobs.applications.export import export
+from symobs.applications.export import exercises, export
+from symobs.ground.errors import ProblemErrors
 from tests.kit import tabled
 from tests.support.tools.exported import checked, held, random_answer
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from symobs.applications.export import ExerciseSet
 
 pytestmark = pytest.mark.skipif(shutil.which("maxima") is None, reason="maxima is not installed")
@@ -101,3 +104,29 @@ def test_the_trees_give_the_credits_of_check() -> None:
 @tabled
 def test_the_trees_give_the_credits_of_check_in_more_examples(name: str) -> None:
     agree(name, 25)
+
+
+#: A double integrator with Q = I, R = 1: p12 = 1, p22² = 3; a plant of first order: p² = 2p + 1, p = 1 + √2; the double
+#: integrator with Q = diag(q, 0): K = [√q  √(2√q)], where q = 2.
+ROOTS = {
+    "plain": ('A = "[0 1; 0 0]"\nB = "[0; 1]"', 'Q = "[1 0; 0 1]"'),
+    "sum": ('A = "1"\nB = "1"', 'Q = "1"'),
+    "nested": ('A = "[0 1; 0 0]"\nB = "[0; 1]"', 'Q = "[2 0; 0 0]"'),
+}
+
+
+@tabled
+def test_square_roots_are_compared_in_every_form(name: str, answer: str, note: str, tmp_path: Path) -> None:
+    plant, weight = ROOTS[name]
+    problem = tmp_path / "p.toml"
+    problem.write_text(
+        f'task = "lqr"\n[plant]\n{plant}\n[specification]\n{weight}\nR = "1"\n[marking]\nasked = ["lqr.K"]\n'
+    )
+    (each,) = exercises([str(problem)])
+    question = question_of(each)
+    ((verdict,),) = run(question, [{"ans1": answer}])
+    (tree,) = question.findall("prt")
+    assert walked(tree, verdict)[1] == f"prt1-{note}"
+    assert "sqrt(2)" in text_of(question, "questiontext/text")
+    with pytest.raises(ProblemErrors, match="its entries hold square roots"):
+        export("prairielearn", [each])
