@@ -26,7 +26,7 @@ PLATFORMS = {
     "ipynb": notebook.files,
 }
 #: What other graders than Maxima do not compare, and the repair.
-_ROOTS = "its entries hold square roots, and an exported grader computes with fractions alone", "export to stack"
+_ROOTS = "these are roots, and an exported grader computes with fractions alone", "export to stack"
 #: The platforms that are given a folder; the others one file, whose name is "".
 FOLDERS = ("prairielearn", "rexams", "ipynb")
 

@@ -15,7 +15,8 @@ from xml.etree.ElementTree import fromstring
 
 from symobs.applications.checking import Checked
 from symobs.applications.checking.checker import known_parts, marking_errors, other_polynomial, part_of_name
-from symobs.exact import Factored, Matrix, Scalar
+from symobs.exact import Factored, Matrix, Root, Scalar
+from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
 from symobs.formula.expression.source import shown
 from symobs.formula.phrases import PHRASES
 from symobs.formula.tree import Roots
@@ -113,6 +114,8 @@ def exported_part(view: ResultInConvention, field: str, name: str, weight: str) 
         return _gain(view, field, made)
     if isinstance(view.result, CompensatorDesign) and field == "F":
         return _compensator(view, made)
+    if (found := view.result.fields.get(field)) and isinstance(found, tuple) and isinstance(found[0], Root):
+        return _roots(view, found, made)
     if view.result.has_one_value(field):
         return _value(view, field, made)
     raise _refused(made["part"], "an exported grader does not hold what decides about it")
@@ -179,6 +182,20 @@ def _compensator(view: ResultInConvention, made: dict[str, Any]) -> ExportedPart
         **{name: texts(matrix.rows) for name, matrix in matrices.items()},
     }
     return _part(data, ((value,),), 0)
+
+
+def _roots(view: ResultInConvention, roots: tuple[Root, ...], made: dict[str, Any]) -> ExportedPart:
+    """Return roots, poles or zeros: right where the polynomial of all of them is."""
+    polynomial = polynomial_of_roots(made["variable"], roots) if all(root.is_closed for root in roots) else None
+    if polynomial is None:
+        raise _refused(made["part"], "they have no closed form")
+    _require_rational(view, made["part"], (polynomial,))
+    texts_of_roots = ", ".join(str(root).replace("I", "%i") for root in roots)
+    phi = [str(entry) for entry in polynomial.coefficients(made["variable"])]
+    is_symbolic = _has_symbols((polynomial,), made["variable"])
+    return _part(
+        made | {"kind": "roots", "symbolic": is_symbolic, "roots": True, "phi": phi}, ((f"[{texts_of_roots}]",),)
+    )
 
 
 #: A number with square roots, as a text.
@@ -613,8 +630,8 @@ def label(part: ExportedPart, begin: str = r"\(", end: str = r"\)") -> str:
 def instruction(part: ExportedPart, entries: str = "export_entries") -> str:
     """Return how to fill in an input, without its letter; `entries` is the phrase on numbers."""
     rows, columns = part.shape
-    if part.kind == "word":
-        return PHRASES["export_word"]
+    if part.kind in {"word", "roots"}:
+        return PHRASES["export_word" if part.kind == "word" else "export_list"]
     entries = "export_roots" if part.data.get("roots") else entries
     said = PHRASES["export_function"].format(variable=part.data["variable"]) if part.is_function else PHRASES[entries]
     if (rows, columns) != (1, 1):

@@ -110,7 +110,8 @@ def variables(each: ExerciseSet) -> str:
         of_variants = [exercise.parts[k - 1] for exercise in each.variants]
         lines += [f"{name}{k}: [{', '.join(values)}][sy_n];" for name, values in _data(of_variants).items()]
         lines += _functions(max(of_variants, key=lambda each: bool(each.data.get("roots"))), k)
-    if any(part.data.get("roots") for exercise in each.variants for part in exercise.parts):
+    values = (part for exercise in each.variants for part in exercise.parts if part.kind == "value")
+    if any(part.data.get("roots") for part in values):
         lines[1:1] = _EQUAL.replace("\n    ", " ").strip().split("\n")
     return "\n".join(lines)
 
@@ -136,6 +137,14 @@ def feedback_variables(each: ExerciseSet, k: int) -> str:
             return _compensator(each, k)
         case "word":
             return f"sy_k: if is(ans{k}=sy_w{k}) then {RIGHT} else {WRONG};"
+        case "roots":
+            return "\n".join(
+                [
+                    f"sy_l: if setp(ans{k}) or listp(ans{k}) then args(ans{k}) else [ans{k}];",
+                    f'sy_p: apply("*", map(lambda([sy_r], {part.data["variable"]}-sy_r), sy_l));',
+                    f"sy_k: if is(radcan(ratsimp(expand(sy_p)-sy_phi{k}))=0) then {RIGHT} else {WRONG};",
+                ]
+            )
     if part.shape == (1, 1):
         equal, opposite = f"is(ratsimp(ans{k}-ta{k})=0)", f"is(ratsimp(ans{k}+ta{k})=0)"
         if any(exercise.parts[k - 1].data.get("roots") for exercise in each.variants):
@@ -161,7 +170,7 @@ def _data(parts: Sequence[ExportedPart]) -> dict[str, list[str]]:
     names = {"gain": ("A", "C"), "compensator": ("A", "B", "C", "right_K", "right_L")}.get(first["kind"], ())
     for name in names:
         found[f"sy_{name}"] = [matrix(part.data[name]) for part in parts]
-    if first["kind"] in {"gain", "compensator"}:
+    if first["kind"] in {"gain", "compensator", "roots"}:
         found["sy_phi"] = [_polynomial(part.data["phi"], part.data["variable"]) for part in parts]
     if first["kind"] == "compensator":
         found["sy_D"] = [part.data["D"][0][0] for part in parts]
@@ -414,7 +423,7 @@ def _nodes(each: ExerciseSet, part: ExportedPart) -> list[tuple[int, str, Fracti
         return Fraction(marks["credit"].get(slip, 0))
 
     found = [(RIGHT, "ok", Fraction(1), "")]
-    if part.kind == "word":
+    if part.kind in {"word", "roots"}:
         return found
     if part.kind == "compensator":
         follow = Fraction(marks["follow_through"])

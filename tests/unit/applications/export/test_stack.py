@@ -128,5 +128,21 @@ def test_square_roots_are_compared_in_every_form(name: str, answer: str, note: s
     (tree,) = question.findall("prt")
     assert walked(tree, verdict)[1] == f"prt1-{note}"
     assert "sqrt(2)" in text_of(question, "questiontext/text")
-    with pytest.raises(ProblemErrors, match="its entries hold square roots"):
+    with pytest.raises(ProblemErrors, match="these are roots"):
         export("prairielearn", [each])
+
+
+#: (s + 1)(s² + 2s + 2), s² − s − 1 and (s + 1)².
+POLYNOMIALS = {"complex": "[0 1 0; 0 0 1; -2 -4 -3]", "golden": "[0 1; 1 1]", "twice": "[0 1; -1 -2]"}
+
+
+@tabled
+def test_poles_are_compared_as_sets_and_lists(name: str, answer: str, note: str, tmp_path: Path) -> None:
+    problem = tmp_path / "p.toml"
+    plant = f'[plant]\nA = "{POLYNOMIALS[name]}"\n[marking]\nasked = ["characteristic_polynomial.roots"]\n'
+    problem.write_text(f'task = "characteristic_polynomial"\n{plant}')
+    question = question_of(exercises([str(problem)])[0])
+    ((verdict,),) = run(question, [{"ans1": answer}])
+    assert walked(question.findall("prt")[0], verdict)[1] == f"prt1-{note}"
+    ((verdict,),) = run(question, [{"ans1": "ta1"}])  # the right value that the question shows
+    assert verdict == 0
