@@ -142,12 +142,13 @@ def schema() -> dict[str, Any]:
 
 @dataclass
 class SheetProblem:
-    """A problem of a sheet: file, points, hint, and room for the answer."""
+    """A problem of a sheet: file, points, hint, room for the answer, and the letter of its version if there are any."""
 
     file: str
     points: tuple[Fraction, ...] = ()
     hint: str = ""
     space: AnswerSpace | None = None
+    version: str = ""
 
 
 @dataclass

@@ -9,6 +9,7 @@ from itertools import chain, combinations, pairwise, product
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.audit import differences
+from symobs.applications.audit.differences import Reason, Remark, WrongEntries, WrongTerm
 from symobs.applications.audit.equations import (
     FUNCTIONS,
     INSTANTS,
@@ -226,6 +227,16 @@ def _open_signs(reading: Reading) -> BudgetExceeded:
     return BudgetExceeded(message, repair="declare the signs of symbols")
 
 
+def _unsaid(said: str) -> Reason:
+    """Return a reason of which nothing is told without the solution."""
+    return Reason((Remark(said, ""),))
+
+
+def _remark(said: str) -> Reason:
+    """Return a reason in the letters and numbers of the equation itself, or on its sizes."""
+    return Reason((Remark.harmless(said),))
+
+
 @dataclass
 class Verdict:
     """The correction of an equation that does not hold in general, and the reason.
@@ -234,7 +245,7 @@ class Verdict:
     """
 
     right: str
-    reason: str
+    reason: Reason
     holds: str = ""
     needs: bool = False
 
@@ -396,9 +407,8 @@ class EquationAuditor:
         needed, reasons = exceptions(reading, nonzero)
         if not needed:
             return None
-        return Verdict(
-            self._under(f"{left} = {right}", *needed), f"true in general only: {'; '.join(reasons)}", "in general"
-        )
+        reason = _unsaid(f"true in general only: {'; '.join(reasons)}")
+        return Verdict(self._under(f"{left} = {right}", *needed), reason, "in general")
 
     # -- roots of squares ---------------------------------------------------------------------------------------------
 
@@ -463,7 +473,9 @@ class EquationAuditor:
         if not true and any(is_rounded(side, reading) for side in (left, right)):
             raise _open_signs(reading)
         if not true:
-            return Verdict("", "the sides are not equal, whatever the signs of what is squared under the roots")
+            return Verdict(
+                "", _unsaid("the sides are not equal, whatever the signs of what is squared under the roots")
+            )
         if len(self._gaps(left, right, reading)) > 1:
             raise _open_signs(reading)
         if len(true) == len(choices):
@@ -483,7 +495,8 @@ class EquationAuditor:
             found = {(factor,): factor in true[0] for factor in squares}
         needed = [f"{text_of_value(product_of(chosen))} {'<=' if odd else '>='} 0" for chosen, odd in found.items()]
         where = f"{'in general only ' * is_all}where {' and '.join(needed)}"
-        return Verdict(self._under(f"{left} = {right}", *needed), f"a root is not negative: true {where}", needs=True)
+        reason = _unsaid(f"a root is not negative: true {where}")
+        return Verdict(self._under(f"{left} = {right}", *needed), reason, needs=True)
 
     def _value(self, node: SyntaxNode, reading: Reading) -> Printed:
         try:
@@ -521,33 +534,35 @@ class EquationAuditor:
 
     def _slip(
         self, left: SyntaxNode, right: SyntaxNode, environment: Environment, *, fit: bool = True
-    ) -> tuple[str, str] | None:
+    ) -> tuple[str, Reason] | None:
         fields = {name for result in self.results for name in result.fields if name[0].islower()}
         matrices = {f"{result.task}_matrix" for result in self.results}
         alphabet = CandidateLetters(environment, frozenset(fields | matrices), fit=fit)
         true, sides = self.patience.asks(self.true), (left, right)
         found = found_slip(*sides, lambda *new: true(*new) and is_plausible(sides, new, self.reading(*new)), alphabet)
-        return None if found is None else (f"{found[0]} = {found[1]}", found[2])
+        return None if found is None else (f"{found[0]} = {found[1]}", _remark(found[2]))
 
-    def _misfit(self, left: SyntaxNode, right: SyntaxNode, message: str, environment: Environment) -> tuple[str, str]:
+    def _misfit(
+        self, left: SyntaxNode, right: SyntaxNode, message: str, environment: Environment
+    ) -> tuple[str, Reason]:
         slip = self._slip(left, right, environment, fit=False)
         if slip is not None:
-            return slip[0], f"{message}; {slip[1]}"
+            return slip[0], _remark(f"{message}; {slip[1]}")
         for side, other in ((left, right), (right, left)):
             try:
                 value = self._value(side, Reading(environment, self.where))
                 if is_spectrum(side) and isinstance(value, Scalar):
-                    return spectrum_text(side, value, environment.variable), message
+                    return spectrum_text(side, value, environment.variable), _remark(message)
                 self._value(other, Reading(environment, self.where))
             except Misfit:
                 continue
             if isinstance(value, (Scalar, Matrix)) and letters_of(side):
-                return f"{side} = {differences.value_text(value)}", message
-        return "", message
+                return f"{side} = {differences.value_text(value)}", _remark(message)
+        return "", _remark(message)
 
     def _values(
         self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Any, Any], reading: Reading, *, spectra: bool
-    ) -> tuple[str, str] | None:
+    ) -> tuple[str, Reason] | None:
         """Return the error of a value or of a formula for one, None if it differs by rounding only."""
         environment = reading.environment
         exact, printed = map(differences.as_matrix, pair)
@@ -559,17 +574,17 @@ class EquationAuditor:
         wrong = differences.wrong_entries(printed, exact)
         if not wrong:
             return None
-        reason = ""
+        reason = None
         if exact.shape == (1, 1):
             reason = differences.polynomial_reason(printed[0, 0], exact[0, 0], environment.variable)
         numbers = set(letters_of(right)) <= {*self.symbols, *INSTANTS, environment.variable}
-        plain = bool(reason) and "; " not in reason and not spectra
+        plain = reason is not None and reason.is_single and not spectra
         evident = numbers and (plain or is_evident(left, exact, printed, len(wrong)))
         slip = None if evident else self._slip(left, right, environment)
         if slip is not None:
             return slip
         if spectra:
-            return spectrum_text(left, exact[0, 0], environment.variable), "the eigenvalues are others"
+            return spectrum_text(left, exact[0, 0], environment.variable), _remark("the eigenvalues are others")
         factor = None if numbers else self._missing_factor(left, right)
         if factor is not None:
             return factor
@@ -577,17 +592,17 @@ class EquationAuditor:
         value, alike = (exact[0, 0], printed[0, 0]) if isinstance(pair[1], Scalar) else (exact, printed)
         return f"{left} = {differences.value_text(value, alike)}", reason or whole
 
-    def _missing_factor(self, left: SyntaxNode, right: SyntaxNode) -> tuple[str, str] | None:
+    def _missing_factor(self, left: SyntaxNode, right: SyntaxNode) -> tuple[str, Reason] | None:
         """Return the equation with its left side multiplied by a factor from a side of an earlier equation."""
         for node in reversed(self.known):
             fixed = SyntaxNode("product", (node, left))
             if node.kind == "block" and self.true(fixed, right):
-                return f"{fixed} = {right}", f"the factor {node} before {left} is missing"
+                return f"{fixed} = {right}", _remark(f"the factor {node} before {left} is missing")
         return None
 
     def _signals(
         self, left: SyntaxNode, right: SyntaxNode, pair: tuple[Any, Any], environment: Environment
-    ) -> tuple[str, str]:
+    ) -> tuple[str, Reason]:
         exact, printed = ({name: part for name, part in side.coefficients.items() if not part.is_zero} for side in pair)
         names = [name for name in {**exact, **printed} if exact.get(name) != printed.get(name)]
         both = exact.keys() & printed.keys()
@@ -599,24 +614,17 @@ class EquationAuditor:
         term = self._missing_term(left, right, names, environment)
         if term is not None:
             return term
-        reasons = []
-        for name in names:
-            if name not in printed:
-                reasons.append(f"the term {differences.term_text(exact[name], name)} is missing")
-            elif name not in exact:
-                reasons.append(f"the term {differences.term_text(printed[name], name)} does not belong there")
-            else:
-                whole = f"the coefficient of {name}"
-                why = differences.reasons(printed[name], exact[name], whole)
-                reasons.append(why if why.startswith(whole) else f"in {whole} {why}")
+        reason = Reason(
+            tuple(piece for name in names for piece in _of_signal(name, printed.get(name), exact.get(name)))
+        )
         terms = (
             " + ".join(differences.term_text(value, name) for name, value in exact.items()).replace("+ -", "- ") or "0"
         )
-        return "" if terms == str(left) else f"{left} = {terms}", "; ".join(reasons)
+        return "" if terms == str(left) else f"{left} = {terms}", reason
 
     def _missing_term(
         self, left: SyntaxNode, right: SyntaxNode, names: Sequence[str], environment: Environment
-    ) -> tuple[str, str] | None:
+    ) -> tuple[str, Reason] | None:
         """Return the equation with one more term, a product of letters of the equation and the one signal that differs."""
         if len(names) != 1 or any(part.kind == "number" for part in every(right)):
             return None
@@ -631,8 +639,25 @@ class EquationAuditor:
                 for last in (term, SyntaxNode("negative", (term,))):
                     fixed = SyntaxNode("sum", (*terms, last))
                     if true(left, fixed):
-                        return f"{left} = {fixed}", f"the term {last} is missing"
+                        return f"{left} = {fixed}", _remark(f"the term {last} is missing")
         return None
+
+
+def _of_signal(name: str, printed: Matrix | None, exact: Matrix | None) -> Iterator[Remark | WrongTerm | WrongEntries]:
+    """Yield what is wrong with the term of a signal."""
+    if printed is None or exact is None:
+        term = differences.term_text(exact if printed is None else printed, name)  # type: ignore[arg-type]
+        yield WrongTerm(name, term, is_missing=printed is None)
+        return
+    whole = f"the coefficient of {name}"
+    for i, piece in enumerate(differences.reasons(printed, exact, whole).pieces):
+        inside = f"in {whole} " * (i == 0)
+        if isinstance(piece, Remark):
+            yield Remark.harmless(f"{inside}{piece.said}", piece.slip)
+        elif isinstance(piece, WrongEntries) and exact.shape != (1, 1):
+            yield replace(piece, inside=inside)
+        elif isinstance(piece, WrongEntries):
+            yield WrongEntries(tuple(replace(entry, is_part=True) for entry in piece.entries))
 
 
 # Findings of the audit of a problem: false equations, right values and reasons.
@@ -700,6 +725,6 @@ def _read(entry: PrintedEntry, desk: EquationAuditor) -> list[Finding]:
         texts = [line.partition(": expected ")[2].partition(", found ") for line in lines]
         return [Finding(entry.where, entry.erratum, came, right, "") for came, _, right in texts]
     return [
-        Finding(entry.where, entry.erratum, printed, verdict.right, verdict.reason, verdict.holds)
+        Finding(entry.where, entry.erratum, printed, verdict.right, str(verdict.reason), verdict.holds)
         for printed, verdict in desk.read(entry)
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -13,8 +14,6 @@ from symobs.exact.algebraic.rounded_decimals import decimals_in, rounds_to, writ
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from symobs.exact.algebraic.rounded_decimals import PrintedDecimal
 
 #: Numbers with roots are rounded from so many bits.
@@ -25,16 +24,111 @@ _MOST_EXCHANGED = 12
 
 @dataclass
 class EntryDifference:
-    """One entry of a printed value, and the right one."""
+    """One entry of a printed value, and the right one; `is_part` unless it is the whole value."""
 
     place: str
     printed: str
     right: str
     slip: str = ""
+    is_part: bool = True
 
     def __str__(self) -> str:
         because = f": {self.slip}" if self.slip else ""
         return f"{self.place} is {self.right}, not {self.printed}{because}"
+
+
+@dataclass
+class Remark:
+    """A sentence on an equation as a whole, and what of it names nothing right; `slip` is its kind, where that has one."""
+
+    said: str
+    hint: str
+    slip: str = ""
+
+    def __str__(self) -> str:
+        return self.said
+
+    @classmethod
+    def harmless(cls, said: str, slip: str = "") -> Remark:
+        """Return a sentence that names nothing right."""
+        return cls(said, said, slip)
+
+
+@dataclass
+class WrongTerm:
+    """A term of a signal that is missing in an equation, or does not belong there."""
+
+    signal: str
+    term: str
+    is_missing: bool
+
+    def __str__(self) -> str:
+        return f"the term {self.term} {self.fault}"
+
+    @property
+    def fault(self) -> str:
+        """What is wrong with the term."""
+        return "is missing" if self.is_missing else "does not belong there"
+
+
+@dataclass
+class WrongEntries:
+    """The wrong entries of a value, or of the coefficient of a signal."""
+
+    entries: tuple[EntryDifference, ...]
+    inside: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.inside}{'; '.join([*map(str, self.entries[:_MOST_LISTED]), *self.more])}"
+
+    @property
+    def more(self) -> list[str]:
+        """How many entries are not listed, if there are any."""
+        left = len(self.entries) - _MOST_LISTED
+        return [f"and {left} more {'entries' if left > 1 else 'entry'}"] if left > 0 else []
+
+    @property
+    def places(self) -> list[str]:
+        """The places of the wrong parts of a value; a value that is wrong as a whole has none."""
+        found = [entry.place for entry in self.entries[:_MOST_LISTED] if entry.is_part]
+        return [f"{self.inside}{found[0]}", *found[1:], *self.more] if found else []
+
+
+@dataclass
+class Reason:
+    """Why an equation is false."""
+
+    pieces: tuple[Remark | WrongTerm | WrongEntries, ...] = ()
+
+    def __str__(self) -> str:
+        return "; ".join(map(str, self.pieces))
+
+    @property
+    def is_single(self) -> bool:
+        """Whether there is one remark, or one wrong term or entry."""
+        return sum(len(each.entries) if isinstance(each, WrongEntries) else 1 for each in self.pieces) == 1
+
+    def hint(self, *, is_gain: bool = False, is_alone: bool = False) -> str:
+        """Return the reason without what is right: one wrong part is told, of several the places.
+
+        Where an entry `is_alone` in its matrix, it is all that there is to find. A value that is wrong as a whole has
+        its slip for a reason, or none; so has a gain with several wrong entries, which may be right in other places.
+        """
+        wrong = [piece for piece in self.pieces if isinstance(piece, WrongEntries)]
+        if wrong and self.is_single:
+            (entry,) = wrong[0].entries
+            if not entry.is_part:
+                return entry.slip
+            return f"{entry.place} is wrong" if is_alone and not wrong[0].inside else str(self)
+        remarks = [piece.hint for piece in self.pieces if isinstance(piece, Remark)]
+        if any(remarks) or is_gain:
+            return "; ".join(filter(None, remarks))
+        places = [place for piece in wrong for place in piece.places]
+        terms = [f"a term in {each.signal} {each.fault}" for each in self.pieces if isinstance(each, WrongTerm)]
+        return "; ".join([*([f"not right: {', '.join(places)}"] if places else []), *terms])
+
+
+ALL_SIGNS = Remark.harmless("all signs are wrong", "signs")
 
 
 def as_matrix(value: Scalar | Matrix) -> Matrix:
@@ -55,11 +149,12 @@ def single(printed: Scalar) -> PrintedDecimal | None:
 def wrong_entries(printed: Matrix, right: Matrix, *, whole: str = "the value") -> list[EntryDifference]:
     """Return the entries in which a printed matrix differs beyond rounding."""
     places = [(i, j) for i in range(right.shape[0]) for j in range(right.shape[1])]
-    return [
-        entry(whole if right.shape == (1, 1) else f"entry ({i + 1}, {j + 1})", printed[i, j], right[i, j])
+    found = [
+        entry(f"entry ({i + 1}, {j + 1})", printed[i, j], right[i, j])
         for i, j in places
         if not rounds_to(printed[i, j], right[i, j])
     ]
+    return [replace(each, place=whole, is_part=False) for each in found] if right.shape == (1, 1) else found
 
 
 def entry(place: str, printed: Scalar, right: Scalar) -> EntryDifference:
@@ -87,30 +182,27 @@ def slip(printed: Scalar, right: Scalar) -> str:
     return ""
 
 
-def reasons(printed: Matrix, right: Matrix, whole: str) -> str:
+def reasons(printed: Matrix, right: Matrix, whole: str) -> Reason:
     """Return the simplest reason that explains all differences of a printed matrix."""
-    entries = wrong_entries(printed, right, whole=whole)
+    entries = tuple(wrong_entries(printed, right, whole=whole))
+    listed = WrongEntries(entries)
     if len(entries) == 1 or (entries and all(entry.slip.startswith("truncated") for entry in entries)):
-        return listed(entries)
+        return Reason((listed,))
     printed = written_out(printed)
     if printed == -right:
-        return "all signs are wrong"
+        return Reason((ALL_SIGNS,))
     if printed == right.T:
-        return "the transpose is printed"
+        return Reason((Remark.harmless("the transpose is printed", "transposed"),))
     if _regular(right) and printed == right.inverse():
-        return "the inverse is printed"
+        return Reason((Remark.harmless("the inverse is printed", "inverse"),))
     exchanged = _exchanged(printed, right)
     if exchanged:
-        return exchanged
+        return Reason((Remark.harmless(exchanged, "exchanged"),))
     factor = _factor(printed, right)
-    return f"{factor}; {listed(entries)}" if factor and len(entries) <= _MOST_LISTED else factor or listed(entries)
-
-
-def listed(entries: Sequence[EntryDifference]) -> str:
-    """Return the wrong entries as one text."""
-    left = len(entries) - _MOST_LISTED
-    more = [f"and {left} more {'entries' if left > 1 else 'entry'}"] if left > 0 else []
-    return "; ".join([*map(str, entries[:_MOST_LISTED]), *more])
+    if not factor:
+        return Reason((listed,))
+    multiplied = Remark.harmless(factor, "factor")
+    return Reason((multiplied, listed) if len(entries) <= _MOST_LISTED else (multiplied,))
 
 
 def _regular(matrix: Matrix) -> bool:
@@ -144,21 +236,21 @@ def _factor(printed: Matrix, right: Matrix) -> str:
     return f"every entry is multiplied by {ratio}" if len(right.entries) > 1 else ""
 
 
-def polynomial_reason(printed: Scalar, right: Scalar, variable: str) -> str:
-    """Return the coefficients in which a printed polynomial differs, empty if the two are not polynomials."""
+def polynomial_reason(printed: Scalar, right: Scalar, variable: str) -> Reason | None:
+    """Return the coefficients in which a printed polynomial differs, None if the two are not polynomials."""
     if not (printed.is_polynomial_in(variable) and right.is_polynomial_in(variable)) or right.degree(variable) < 1:
-        return ""
+        return None
     wanted, came = (list(value.coefficients(variable)) for value in (right, printed))
     length = max(len(wanted), len(came))
     wanted, came = ([Scalar.of(0)] * (length - len(each)) + each for each in (wanted, came))
     if wanted == [-coefficient for coefficient in came]:
-        return "all signs are wrong"
-    entries = [
+        return Reason((ALL_SIGNS,))
+    entries = tuple(
         entry(_power_name(length - 1 - i, variable), one, other)
         for i, (one, other) in enumerate(zip(came, wanted, strict=True))
         if not rounds_to(one, other)
-    ]
-    return listed(entries)
+    )
+    return Reason((WrongEntries(entries),)) if entries else None
 
 
 def _power_name(power: int, variable: str) -> str:

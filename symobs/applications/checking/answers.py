@@ -310,6 +310,7 @@ class Answer:
     note      how the file was read, where that is worth a word
     said      what sentences say: observable, P is positive definite
     written   what the student wrote for a value, by its name, or task.name, where that is known
+    repeated  the values that a text gives one letter, in their order
     """
 
     student: str = ""
@@ -322,6 +323,7 @@ class Answer:
     note: str = ""
     said: tuple[Said, ...] = ()
     written: Mapping[str, str] = field(default_factory=dict)
+    repeated: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
 
 
 def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer:
@@ -364,6 +366,7 @@ def _of_lines(text: str, where: str, own: Sequence[str]) -> Answer:
     errors: list[SymobsError] = []
     functions: set[str] = set()
     written: dict[str, str] = {}
+    repeated: dict[str, tuple[Any, ...]] = {}
     in_case = False
     for number, line in kept:
         place = f"line {number}"
@@ -387,6 +390,7 @@ def _of_lines(text: str, where: str, own: Sequence[str]) -> Answer:
         is_kept = name in table and (in_case or _IN_LETTERS.search(defined.value) is not None)
         if value and (is_new or not is_kept):
             table[name] = value
+            repeated[defined.name] = (*repeated.get(defined.name, ()), value)
             written[defined.name] = _own_text(own[number - 1], defined)
         if not task and isinstance(value, str) and _is_relation(name, value):
             steps.append(Step(line if defined.is_chain else f"{name}{defined.argument} = {value}", place))
@@ -396,7 +400,8 @@ def _of_lines(text: str, where: str, own: Sequence[str]) -> Answer:
         values["stable_if"] = conditions
     if exceptions or conditions:
         values.setdefault("conditions", exceptions or conditions)
-    return Answer(values=values, steps=tuple(steps), loose=True, said=tuple(said), written=written)
+    more: dict[str, Any] = {"said": tuple(said), "written": written, "repeated": repeated}
+    return Answer(values=values, steps=tuple(steps), loose=True, **more)
 
 
 def _of_relation(line: str, functions: Collection[str]) -> tuple[str, dict[str, Any]]:

@@ -26,7 +26,7 @@ from symobs.applications.checking.faults import Explained, explain_gain, explain
 from symobs.applications.checking.folders import text_of_answer, text_of_path
 from symobs.applications.checking.handwriting import entries_of, fields_of, law_of, listed_of, with_own_letters
 from symobs.applications.checking.judgement import judge_task, rounds
-from symobs.applications.checking.parts import OF_THE_PLANT, asked_of, exists, field_called, known_names
+from symobs.applications.checking.parts import OF_THE_PLANT, asked_of, exists, field_called, known_names, part_of_task
 from symobs.applications.checking.regions import read_conditions
 from symobs.applications.checking.report import SHOW, TO_BE_READ, CheckReport, Line, Part
 from symobs.exact import Factored, Matrix, Scalar
@@ -259,7 +259,8 @@ def _exchanged(view: ResultInConvention, judgement: TaskJudgement, judged: Judge
 def _explanation(view: ResultInConvention, judgement: TaskJudgement, judged: Judged) -> Explained:
     """Return why a value is wrong, as far as it is a matrix or a number."""
     if judged.value is None:
-        return Explained()
+        said = "the values are rounded, and exact ones are asked for"
+        return Explained("rounded", said) if judged.rounded else Explained()
     is_part = view.result.gains_are_one
     if is_part and view.standard(judged.letter)[1] < 0:
         return Explained()  # what is said of a value has its standard sign
@@ -600,9 +601,15 @@ def _given(
         having = [(task, field) for task, field in having if field in available(tasks[task])]
         if key == "conditions" and answer.loose:  # conditions in a text are the answer where they are asked for
             having = [(task, field) for task, field in having if task in with_exceptions]
-        for task, field in having:
-            if field not in found[task] and not _is_empty(value):
-                found[task][field] = value
+        if answer.loose and (of_task := part_of_task(key, views)) is not None:
+            having = [of_task]
+        shared = [part for part in having if part in [(view.task, name) for view, name in asked]]
+        values = answer.repeated.get(key, ())
+        in_order = 1 < len(values) == len(shared)  # P of lqr, then P of kalman
+        pairs = zip(shared, values, strict=True) if in_order else ((part, value) for part in having)
+        for (task, field), entry in pairs:
+            if field not in found[task] and not _is_empty(entry):
+                found[task][field] = entry
         if not having and (not answer.loose or isinstance(value, Mapping)):
             errors.append(_unknown(key, views))
     if errors:

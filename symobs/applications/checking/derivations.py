@@ -7,20 +7,29 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import field, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from symobs.applications.audit.auditor import EquationAuditor, printed_entries
-from symobs.applications.audit.differences import as_matrix, wrong_entries
+from symobs.applications.audit.differences import Reason, WrongEntries, as_matrix, wrong_entries
 from symobs.applications.audit.evaluation import Misfit, common, equal, value_of
 from symobs.applications.audit.slips import SearchBudget
-from symobs.applications.checking.answers import Answer, Step, as_value, read_like
+from symobs.applications.checking.answers import Answer, Step, as_value, has_decimals, read_like
 from symobs.applications.checking.handwriting import EIGENVALUES, in_letters, named_entries
-from symobs.applications.checking.parts import OF_THE_PLANT, exists, field_called, is_of_time
-from symobs.applications.checking.regions import SOME_PIECES, compare, part_described, read_conditions
+from symobs.applications.checking.parts import OF_THE_PLANT, exists, field_called, is_of_time, part_of_task
+from symobs.applications.checking.regions import (
+    SOME_PIECES,
+    compare,
+    conditions_on,
+    is_implied,
+    part_described,
+    read_conditions,
+    rounded_on,
+)
 from symobs.applications.checking.report import Line
+from symobs.applications.checking.rounded import rounds_a_root
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.exact.algebraic.rounded_decimals import polynomial_of
-from symobs.formula.expression import parse_poles
+from symobs.formula.expression import parse_poles, parse_scalar
 from symobs.formula.expression.syntax import SyntaxNode, letters_of
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import (
@@ -35,6 +44,7 @@ from symobs.ground.errors import (
 from symobs.problem.expect import found_in, met, names_of
 from symobs.proof.certificate.claims import UNREADABLE
 from symobs.tasks.analysis.rank.observability import controllability_rank, observability_rank
+from symobs.tasks.analysis.time_response.initial_state import InitialState
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
@@ -43,67 +53,20 @@ if TYPE_CHECKING:
 
     from symobs.applications.audit.auditor import PrintedEntry
     from symobs.applications.checking.judgement import TaskJudgement
+    from symobs.applications.checking.regions import Union
     from symobs.formula.convention import Convention
     from symobs.problem import Problem
     from symobs.problem.fields import Milestone
+    from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
     from symobs.tasks.result import Result
 
 
 # The auditor of a derivation's lines: that of printed equations, with the student's values in place of letters.
 
 
-#: A right value beside the one that was written, and the slip from one to the other.
-_BESIDE = re.compile(r"(.+?) is .+, not [^:]+(?:: (.+))?")
-_PART = re.compile(r"(?:in )?(?:entry|the coefficient|the constant term)\b")
-#: A term with its right coefficient, or with what a student's letters make of it: its signal alone is a place.
-_TERM = re.compile(r"the term (?:.* )?-?(\S+) (is missing|does not belong there)")
-_MORE = re.compile(r"and [0-9]+ more entr(?:y|ies)")
-
-
-#: What is wrong with a value as a whole, in words that have no right value in them.
-_CAUSE = re.compile(
-    r"(?:in the coefficient of \S+ )?"
-    r"(?:all signs are wrong|the (?:transpose|inverse) is printed|every entry is multiplied by \S+"
-    r"|the (?:entries|rows|columns) [(),0-9 ]+ and [(),0-9 ]+ are exchanged)"
-    r"|the eigenvalues are others"
-)
-
-
-_BETWEEN_PIECES = re.compile(r"; (?![^\[]*\])")
-
-
-def without_solution(reason: str, *, is_gain: bool = False) -> str:
-    """Return why a line is false without what is right: one wrong entry or coefficient is told, of several the places.
-
-    A value that is wrong as a whole has its slip for a reason, or none; so has a gain, which may be right in other places.
-    Of what has none of the known wordings nothing is told.
-    """
-    pieces = _BETWEEN_PIECES.split(reason)
-    beside = [found for piece in pieces if (found := _BESIDE.fullmatch(piece)) and not _TERM.fullmatch(piece)]
-    if len(pieces) == len(beside) == 1:
-        return reason if _PART.match(beside[0][1]) else beside[0][2] or ""
-    causes = [piece for piece in pieces if _CAUSE.fullmatch(piece)]
-    if causes or is_gain:
-        return "; ".join(causes)
-    places = [found[1] for found in beside if _PART.match(found[1])]
-    places += [piece for piece in pieces if places and _MORE.fullmatch(piece)]
-    terms = [f"a term in {found[1]} {found[2]}" for piece in pieces if (found := _TERM.fullmatch(piece))]
-    return "; ".join([*([f"not right: {', '.join(places)}"] if places else []), *terms])
-
-
-def place_alone(reason: str) -> str:
-    """Return the reason for a matrix with one entry at most, of which a right entry may be all that there is to find."""
-    return re.sub(r"^(entry \([0-9]+, [0-9]+\)) is [^;]*$", r"\1 is wrong", reason)
-
-
 @dataclass(frozen=False)
 class LineAuditor(EquationAuditor):
-    """An auditor that tells whether a line is true, and what it defines.
-
-    What is said in the letters and numbers of the line itself, of slips and of sizes, is `harmless`: it gives nothing away.
-    """
-
-    harmless: set[str] = field(init=False, default_factory=set)
+    """An auditor that tells whether a line is true, and what it defines."""
 
     def members(self, entry: PrintedEntry) -> tuple[SyntaxNode, ...]:
         """Return the members of a line, its conditions and its own letters being set."""
@@ -147,33 +110,9 @@ class LineAuditor(EquationAuditor):
         """Return the letters of a line."""
         return {*letters_of(*self.members(entry), *self.let.values())}
 
-    def explained(self, entry: PrintedEntry, *, is_gain: bool) -> tuple[str, str]:
-        """Return the correction of a false line and the reason without it, empty where none is found."""
-        for _, verdict in self.read(entry):
-            if not verdict.holds:
-                said = verdict.reason
-                return verdict.right, said if said in self.harmless else without_solution(said, is_gain=is_gain)
-        return "", ""
-
-    def _slip(self, *sides: Any, **options: Any) -> tuple[str, str] | None:
-        return self._noted(super()._slip(*sides, **options))
-
-    def _misfit(self, *sides: Any) -> tuple[str, str]:
-        found = super()._misfit(*sides)
-        self._noted(found)
-        return found
-
-    def _missing_factor(self, *sides: Any) -> tuple[str, str] | None:
-        return self._noted(super()._missing_factor(*sides))
-
-    def _missing_term(self, *sides: Any) -> tuple[str, str] | None:
-        return self._noted(super()._missing_term(*sides))
-
-    def _noted(self, found: tuple[str, str] | None) -> tuple[str, str] | None:
-        """Return a correction, its reason being noted as harmless."""
-        if found is not None:
-            self.harmless.add(found[1])
-        return found
+    def explained(self, entry: PrintedEntry) -> tuple[str, Reason]:
+        """Return the correction of a false line, empty where none is found, and the reason."""
+        return next(((v.right, v.reason) for _, v in self.read(entry) if not v.holds), ("", Reason()))
 
 
 def auditor(
@@ -229,8 +168,8 @@ def _of_member(step: Step, name: str, member: str, view: ResultInConvention) -> 
     if own.shape != exact.shape:
         rows, columns = (f"{a}x{b}" for a, b in (exact.shape, own.shape))
         return Line(step.where, step.relation, "false", reason=f"{name} is {rows} here, yours is {columns}")
-    wrong = wrong_entries(own, exact, whole=name)
-    reason = without_solution("; ".join(map(str, wrong))) or "its sides are not equal"
+    wrong = Reason((WrongEntries(tuple(wrong_entries(own, exact, whole=name))),))
+    reason = wrong.hint() or "its sides are not equal"
     return Line(step.where, step.relation, "false", right=f"{name} = {right}", reason=reason)
 
 
@@ -384,6 +323,10 @@ def _states_a_part(step: Step, answer: Answer, views: Sequence[ResultInConventio
     given = [entry.get(letter) for entry in (answer.values, *answer.values.values()) if isinstance(entry, Mapping)]
     if letter in chosen:
         return value in given
+    if answer.loose and part_of_task(letter, views) is not None:
+        return True
+    if len(answer.repeated.get(letter, ())) == sum(exists(view.result, letter) for view in views) > 1:
+        return value in answer.repeated[letter]  # P of lqr, P of kalman
     return letter in OF_THE_PLANT and value in given and any(exists(view.result, letter) for view in views)
 
 
@@ -416,8 +359,36 @@ def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
         return _of_conditions(state, step)
     if (line := _of_an_eigenvalue(state, step, names)) is not None:
         return replace(line, relation=written)
+    if (line := _of_a_measurement(state, step)) is not None:
+        return replace(line, relation=written)
     of_time = of_function_of_time(step, state.views, lambda member: _audited(state, member, answer))
     return replace(of_time or _audited(state, step, answer), relation=written)
+
+
+_OUTPUT = re.compile(r"\s*(?:y|(ẏ))(?:_?(\d))?\s*('*)\s*\(\s*([^()=]+?)\s*\)\s*=\s*([^=]+)")
+
+
+def _of_a_measurement(state: _Derivation, step: Step) -> Line | None:
+    """Return whether a line y(0) = 3 or y'(0) = -1 says what was measured; None for any other line, or where nothing was."""
+    found = _OUTPUT.fullmatch(step.relation)
+    result = next((each for each in state.right.values() if isinstance(each, InitialState)), None)
+    if found is None or result is None:
+        return None
+    names = names_of(ResultInConvention(result, state.views[0].convention))
+    try:
+        at = parse_scalar(found[4], names, where=step.where, functions=True)
+        value = result.measured(at, len(found[3]) + bool(found[1]))
+        if value is None:
+            return None
+        right: Any = value if found[2] is None and value.shape[0] > 1 else value[int(found[2] or 1) - 1, 0]
+        mine = read_like(right, as_value(found[5]), names, "t", step.where)
+        assert mine is not None  # noqa: S101 - the right one is a matrix or a number
+        own, exact = as_matrix(mine), as_matrix(right)
+    except (*_OPEN, IndexError, SymobsError):
+        return None
+    is_true = own.shape == exact.shape and not wrong_entries(own, exact)
+    reason = "" if is_true else "this was not measured"
+    return Line(step.where, step.relation, "true" if is_true else "false", reason=reason)
 
 
 _NUMBERED = re.compile(rf"\s*((?:{EIGENVALUES})_?\d)\s*=\s*([^=]+)")
@@ -436,9 +407,12 @@ def _of_an_eigenvalue(state: _Derivation, step: Step, names: Collection[str]) ->
         known = [value for result in state.right.values() for value in _polynomials(result)]
     except (InputError, ValueError, TypeError, TooLarge):
         return None
-    is_one = any((polynomial / factor).is_polynomial_in(variable) for polynomial in known)
-    reason = "" if is_one else "this is no eigenvalue here"
-    return Line(step.where, step.relation, "true" if is_one else "false", reason=reason)
+    is_one, reason = any((polynomial / factor).is_polynomial_in(variable) for polynomial in known), ""
+    if not is_one and has_decimals(found[2]) and any(rounds_a_root(found[2], each, variable) for each in known):
+        is_one, reason = state.problem.marking.decimals == "accept", "this is rounded, and an exact value is asked for"
+    elif not is_one:
+        reason = "this is no eigenvalue here"
+    return Line(step.where, step.relation, "true" if is_one else "false", reason="" if is_one else reason)
 
 
 def _polynomials(result: Result) -> Iterator[Scalar]:
@@ -496,12 +470,12 @@ def _not_true(
         desk = own
     is_gain = defined is not None and state.is_gain(defined[0])
     try:
-        corrected, reason = desk.explained(entry, is_gain=is_gain)
+        corrected, why = desk.explained(entry)
     except (CertificateRejected, *UNREADABLE):  # the search for the cause found none that stands
-        corrected, reason = "", ""
-    if defined is not None and isinstance(defined[1], Matrix) and sum(not x.is_zero for x in defined[1].entries) < 2:
-        reason = place_alone(reason)
-    reason = reason or ("" if is_gain else "its sides are not equal")
+        corrected, why = "", Reason()
+    matrix = defined[1] if defined is not None else None
+    is_alone = isinstance(matrix, Matrix) and sum(not x.is_zero for x in matrix.entries) < 2
+    reason = why.hint(is_gain=is_gain, is_alone=is_alone) or ("" if is_gain else "its sides are not equal")
     if desk is not right:
         reason = ", ".join(filter(None, (reason, _with_own(state, entry, right, corrected))))
     if defined is not None:
@@ -536,19 +510,27 @@ def _of_conditions(state: _Derivation, step: Step) -> Line:
     names = names_of(view)
     known = None if names is None else {**dict.fromkeys(view.result.question.parameters, "real"), **names}
     try:
-        union = read_conditions(step.relation, known, step.where)
-        ours = read_conditions(list(view.result.fields["stable_if"]), known)
-        both = tuple((*mine, *theirs) for mine in ours for theirs in union)
-        found = compare(view.result, both)  # type: ignore[arg-type]
-        part = part_described(view.result, union) if found.verdict == "wrong" else ""  # type: ignore[arg-type]
+        region, marking = cast("StabilityRegion", view.result), state.problem.marking
+        if marking.decimals == "accept" and has_decimals(step.relation):
+            union = rounded_on(region, step.relation, known, marking.digits, step.where)
+        else:
+            union = conditions_on(region, step.relation, known, step.where)
+        verdict = _of_union(region, union, known)
+        part = part_described(region, union) if verdict == "false" else ""
     except _OPEN as error:
         return Line(step.where, step.relation, "undecided", reason=str(error))
     except SymobsError as error:
         return Line(step.where, step.relation, "unreadable", reason=_without_place(error))
-    verdict = {"right": "true", "wrong": "undecided" if part == SOME_PIECES else "false"}.get(
-        found.verdict, "undecided"
-    )
-    return Line(step.where, step.relation, verdict, reason=part)
+    return Line(step.where, step.relation, "undecided" if part == SOME_PIECES else verdict, reason=part)
+
+
+def _of_union(region: StabilityRegion, union: Union, known: Mapping[str, str] | None) -> str:
+    """Return whether a region implies conditions, as the verdict on a line."""
+    if region.region is not None:
+        return "true" if is_implied(region, union) else "false"
+    ours = read_conditions(list(region.fields["stable_if"]), known)
+    found = compare(region, tuple((*mine, *theirs) for mine in ours for theirs in union))
+    return {"right": "true", "wrong": "false"}.get(found.verdict, "undecided")
 
 
 def _is_met(milestone: Milestone, lines: Sequence[Line], right: set[str]) -> bool:

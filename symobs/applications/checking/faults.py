@@ -383,8 +383,8 @@ def _with(matrix: Matrix, i: int, j: int, entry: Scalar) -> Matrix:
 # Faults of a value that is the only one: compared with the right one entry by entry, coefficient by coefficient.
 
 
-#: The slips that a comparison of matrices names, by what it says of them.
-_SAID = {"every entry is multiplied": "factor", "exchanged": "exchanged", "the inverse is printed": "inverse"}
+#: The slips of a matrix as a whole that a comparison of entries finds.
+_OF_THE_WHOLE = {"factor", "exchanged", "inverse"}
 
 
 def explain_value(
@@ -514,11 +514,9 @@ def _specialised(mine: Matrix, exact: Matrix, letter: str, variable: str) -> Ite
 
 def _whole(mine: Matrix, exact: Matrix, letter: str) -> Iterator[Fault]:
     """Yield what is wrong with a matrix as a whole: a factor, an exchange, the inverse."""
-    said = differences.reasons(mine, exact, letter)
-    for words, slip in _SAID.items():
-        if words in said:
-            yield Fault(slip, said.split(";")[0])
-            return
+    for piece in differences.reasons(mine, exact, letter).pieces:
+        if isinstance(piece, differences.Remark) and piece.slip in _OF_THE_WHOLE:
+            yield Fault(piece.slip, piece.said)
 
 
 # Faults of F(s): the compensator with one term left out, or with one sign turned.

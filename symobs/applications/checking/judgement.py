@@ -519,9 +519,11 @@ def _is_open(task: _Task, result: Result, part: Judged) -> bool:
 def _region(task: _Task, part: Judged) -> Judged:
     """Return the verdict on a region given by conditions."""
     try:
-        found = region_verdict(task.right, part.given, task.names)
+        found = region_verdict(task.right, part.given, task.names, task.marking)
     except UNDECIDED as error:
         return replace(part, verdict="undecided", reason=str(error))
     except InputError as error:
         return _unreadable(part, error)
+    if found.verdict == "right":
+        return replace(part, verdict="right", hints=(found.slip,) if found.slip else ())
     return replace(part, verdict=found.verdict, separation=found, reason=found.reason)

@@ -20,7 +20,7 @@ from symobs.exact import Complex, Matrix, Root, Scalar
 from symobs.ground.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from symobs.tasks.result import Result
     from symobs.tasks.result.in_convention import ResultInConvention
@@ -100,6 +100,15 @@ def asked_of(result: Result) -> tuple[str, ...]:
     there = tuple(name for name in asked if exists(result, name) or name in result.decimals)
     depends = result.verdict == "conditional" and {*there} <= {"rank"} and bool(result.holds_where)
     return (*(there or ("verdict",)), *(("conditions",) if depends else ()))
+
+
+def part_of_task(name: str, views: Sequence[ResultInConvention]) -> tuple[str, str] | None:
+    """Return the task and the field that a name with the task before or behind it means, P_lqr or lqr_P; None for others."""
+    for view in views:
+        for field in (name.removeprefix(f"{view.task}_"), name.removesuffix(f"_{view.task}")):
+            if field != name and exists(view.result, field_called(view.result, view.standard(field)[0])):
+                return view.task, field_called(view.result, view.standard(field)[0])
+    return None
 
 
 def field_called(result: Result, name: str) -> str:

@@ -11,15 +11,26 @@ import re
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import product
 from math import prod
 from random import Random
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from symobs.applications.checking.answers import exact
-from symobs.exact import Scalar, TooLarge
-from symobs.exact.algebraic.real_algebraic import RealNumber, integer_factor, rational_between, roots_of_scalar
+from symobs.applications.audit.differences import single
+from symobs.applications.checking.answers import exact, has_decimals
+from symobs.applications.checking.rounded import has_digits, in_enough_digits
+from symobs.exact import Complex, Scalar, TooLarge
+from symobs.exact.algebraic.enclosure import near
+from symobs.exact.algebraic.real_algebraic import (
+    RealNumber,
+    RealRoot,
+    integer_factor,
+    rational_between,
+    roots_of_scalar,
+)
 from symobs.exact.algebraic.root_location import value_at
+from symobs.exact.algebraic.rounded_decimals import PrintedDecimal, conjugates, product_of_linear, written_out
 from symobs.exact.core.generators import function_named
 from symobs.formula.expression import parse_scalar
 from symobs.formula.expression.source import shown
@@ -27,14 +38,14 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, NotShown
 from symobs.problem.expect import conditions_agree
 from symobs.stability.criteria.critical_polynomials import irreducible
-from symobs.stability.regions.region import PlaneRegion
+from symobs.stability.regions.region import LineRegion, PlaneRegion
 from symobs.tasks.analysis.stability_region.stability_region import RegionQuestion, StabilityRegion
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
+    from symobs.problem.fields import Marking
     from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary
-    from symobs.stability.regions.region import LineRegion
 
     Height = Fraction | RealNumber
 
@@ -45,17 +56,25 @@ if TYPE_CHECKING:
 _OPERATOR = re.compile(r"(!=|>=|<=|>|<|==|=)")
 _AND = re.compile(r"\band\b|&&?|[,;]")
 _OR = re.compile(r"\bor\b|\|\|?")
+#: What stands behind digits that are not all there are.
+_CUT_OFF = re.compile(r"(?<=\d)(?:…|\.\.\.)")
 _MOST, _DEEPEST = 40, 10
+#: The bits of approximations of ends.
+_BITS = 256
 #: A union of conjunctions.
 Union = tuple[tuple["Inequality", ...], ...]
 
 
 class Inequality(NamedTuple):
-    """value > 0, value >= 0 or value != 0, and how it was written."""
+    """value > 0, value >= 0 or value != 0, and how it was written.
+
+    Of one with an irrational `end` the value is a number times the distance of its only letter from that.
+    """
 
     value: Scalar
     operator: str
     text: str
+    end: RealNumber | None = None
 
     def holds(self, sign: int) -> bool:
         """Return whether it holds where the value has this sign."""
@@ -67,23 +86,23 @@ _NEVER = re.compile(r"false|no|nein|never|nie|(not|nicht) (stable|stabil)|unstab
 _ALWAYS = re.compile(r"true|yes|ja|always|immer|((always|immer) )?(stable|stabil)", re.IGNORECASE)
 
 
-def read_conditions(given: Any, names: Any, where: str = "stable_if") -> Union:
+def read_conditions(given: Any, names: Any, where: str = "stable_if", *, rounding: bool = False) -> Union:
     """Return the conditions of a text, of a list (all of them hold) or of a list of lists (one of them holds).
 
-    Raises `InputError` for what is no condition.
+    With `rounding` decimals stay what was printed, else they are fractions. Raises `InputError` for what is no condition.
     """
     given = _unpacked(given)
+    read = partial(_conjunction, names=names, where=where, rounding=rounding)
     if isinstance(given, str):
-        union = [_conjunction(parts, names, where) for parts in _disjuncts(given, where)]
+        union = [read(parts) for parts in _disjuncts(given, where)]
     elif isinstance(given, list) and any(isinstance(part, list) for part in given):
-        parts = [part if isinstance(part, list) else [part] for part in given]
-        union = [_conjunction(part, names, where) for part in parts]
+        union = [read(part if isinstance(part, list) else [part]) for part in given]
     elif isinstance(given, list) and len(given) > 1 and any(map(_OR.search, map(str, given))):
         raise InputError('a list with "or" has two readings', where=where, repair="write a list of lists")
     elif isinstance(given, list) and len(given) == 1:
-        return read_conditions(given[0], names, where)
+        return read_conditions(given[0], names, where, rounding=rounding)
     elif isinstance(given, list):
-        union = [_conjunction(given, names, where)]
+        union = [read(given)]
     else:
         raise InputError("conditions are expected", where=where, repair='write "h1 > 3 and h2 > 0"')
     found = tuple(part for part in union if part is not None)
@@ -104,7 +123,7 @@ def _unpacked(given: Any) -> Any:
     return text[1:-1] if text[:1] + text[-1:] in {"[]", "{}"} else text
 
 
-def _conjunction(parts: Sequence[Any], names: Any, where: str) -> tuple[Inequality, ...] | None:
+def _conjunction(parts: Sequence[Any], names: Any, where: str, *, rounding: bool) -> tuple[Inequality, ...] | None:
     """Return the inequalities that hold together; None where one of them is False."""
     found: list[Inequality] = []
     for part in parts:
@@ -117,7 +136,7 @@ def _conjunction(parts: Sequence[Any], names: Any, where: str) -> tuple[Inequali
             if _NEVER.fullmatch(text):
                 return None
             if text and not _ALWAYS.fullmatch(text):
-                found += _chain(text, names, where)
+                found += _chain(text, names, where, rounding=rounding)
     return tuple(found)
 
 
@@ -165,13 +184,15 @@ def _without_brackets(text: str) -> str:
     return inner[1:-1] if _OPERATOR.search(inner) else inner
 
 
-def _chain(text: str, names: Any, where: str) -> list[Inequality]:
+def _chain(text: str, names: Any, where: str, *, rounding: bool) -> list[Inequality]:
     """Return the inequalities of a chain: 3 < h1 < 8."""
     pieces = _OPERATOR.split(text)
     if len(pieces) < 3 or any(operator in {"=", "=="} for operator in pieces[1::2]):
         repair = 'write for example "h1 > 3" or "3 < h1 < 8"'
         raise InputError(f'"{shown(text, 60)}" is no condition', where=where, repair=repair)
-    sides = [parse_scalar(exact(side), names, where=where, functions=True) for side in pieces[::2]]
+    options: dict[str, Any] = {"where": where, "functions": True, "rounding": rounding}
+    told = [_CUT_OFF.sub("", side) for side in pieces[::2]]
+    sides = [parse_scalar(side if rounding else exact(side), names, **options) for side in told]
     found: list[Inequality] = []
     for i, operator in enumerate(pieces[1::2]):
         value = sides[i] - sides[i + 1] if operator in {">", ">=", "!="} else sides[i + 1] - sides[i]
@@ -205,20 +226,112 @@ class Separation:
     polynomial: str = ""
 
 
-def region_verdict(result: Any, given: Any, names: Any) -> Separation:
-    """Return whether conditions describe the region of a result.
+def region_verdict(result: Any, given: Any, names: Any, marking: Marking) -> Separation:
+    """Return whether conditions describe the region of a result, with the slip `rounded` where their decimals round its ends.
 
-    Raises `InputError` where they cannot be read, and `NotShown` where they have roots or functions.
+    Raises `InputError` where they cannot be read, and `NotShown` where they have functions, or roots beside two parameters.
     """
-    union = read_conditions(given, {**dict.fromkeys(result.question.parameters, "real"), **names})
+    known = {**dict.fromkeys(result.question.parameters, "real"), **names}
+    union = conditions_on(result, given, known)
     found = compare(result, union)
-    return found if found.verdict != "wrong" else _explained(result, union, found)
+    if found.verdict != "wrong":
+        return found
+    if has_decimals(given) and compare(result, rounded_on(result, given, known, marking.digits)).verdict == "right":
+        if marking.decimals == "accept":
+            return Separation("right", slip="rounded")
+        return replace(found, slip="rounded", reason="its ends are rounded, and exact values are asked for")
+    return _explained(result, union, found)
+
+
+def conditions_on(result: StabilityRegion, given: Any, names: Any, where: str = "stable_if") -> Union:
+    """Return conditions on a region; on one parameter with their irrational ends. Raises `InputError` for what is none."""
+    union = read_conditions(given, names, where)
+    return _with_ends(union, result.region.name) if isinstance(result.region, LineRegion) else union
+
+
+def rounded_on(result: StabilityRegion, given: Any, names: Any, digits: int | None, where: str = "stable_if") -> Union:
+    """Return conditions on a region, those on one parameter with its ends where their decimals round them."""
+    if not isinstance(result.region, LineRegion):
+        return read_conditions(given, names, where)
+    union = read_conditions(in_enough_digits(given, digits), names, where, rounding=True)
+    return _with_ends(_with_rounded_ends(result.region, union, digits), result.region.name)
+
+
+def is_implied(result: StabilityRegion, union: Union) -> bool:
+    """Return whether conditions hold in all of a region with exact pieces; raises `TooLarge` where these are not known."""
+    assert result.region is not None  # noqa: S101 - asked only where there is one
+    _require_rational(union)
+    return all(
+        _holds(union, fixed, name, height) for fixed, name, height, right in _pieces(result.region, union) if right
+    )
+
+
+def _with_rounded_ends(region: LineRegion, union: Union, digits: int | None) -> Union:
+    """Return conditions in which decimals that round an end of the region, or cut it off, are that end."""
+    ends = [
+        root for factor in region.critical.factors for root in roots_of_scalar(_restricted(factor, {}), region.name)
+    ]
+
+    def at_end(condition: Inequality) -> Inequality:
+        decimal = single(-_linear(condition.value, region.name)[1])
+        plain = condition._replace(value=written_out(condition.value))
+        if decimal is None:
+            return plain
+        found = (
+            end for end in ends if has_digits(decimal, end.interval(_BITS)[0], digits) or _is_cut_off(decimal, end)
+        )
+        return plain._replace(end=next(found, None))
+
+    return tuple(tuple(map(at_end, part)) for part in union)
+
+
+def _is_cut_off(decimal: PrintedDecimal, end: RealNumber) -> bool:
+    """Return whether a decimal has the first digits of an irrational number, as a page prints them."""
+    return not end.is_rational and decimal == PrintedDecimal.of(end.truncated())
+
+
+def _linear(value: Scalar, name: str) -> tuple[Scalar, Scalar]:
+    """Return a and b where a value is a·(name + b), 0 and 0 where it is no such value."""
+    coefficients = value.coefficients(name) if value.is_polynomial_in(name) else ()
+    if len(coefficients) != 2 or not coefficients[0].is_constant:
+        return Scalar.of(0), Scalar.of(0)
+    return coefficients[0], coefficients[1] / coefficients[0]
+
+
+def _with_ends(union: Union, name: str) -> Union:
+    """Return conditions on one parameter whose ends are roots of numbers with these ends; others are as they were."""
+
+    def at_end(condition: Inequality) -> Inequality:
+        slope, shift = _linear(condition.value, name)
+        if slope.is_zero or shift.is_constant or condition.end is not None:
+            return condition
+        return condition._replace(end=_real_number(-shift))
+
+    return tuple(tuple(map(at_end, part)) for part in union)
+
+
+def _real_number(value: Scalar) -> RealNumber | None:
+    """Return a number with square roots, or one root of another kind, as a root of its polynomial."""
+    (generator, *others) = (function_named(name) for name in value.names)
+    if isinstance(generator, RealRoot) and not others and value == generator.value:
+        return generator.number
+    approximation = near(value, _BITS)
+    polynomial = product_of_linear("x", conjugates(Complex.of(value), of_numbers=True))
+    if polynomial is None or polynomial.names != {"x"} or approximation is None:
+        return None
+    return min(roots_of_scalar(polynomial, "x"), key=lambda root: abs(root.interval(_BITS)[0] - approximation))
+
+
+def _require_rational(union: Union) -> None:
+    """Raise `NotShown` where a condition has roots or functions that are no end."""
+    conditions = [condition for part in union for condition in part if condition.end is None]
+    if any(function_named(name) for condition in conditions for name in condition.value.names):
+        raise NotShown("conditions with roots or functions are not compared")
 
 
 def compare(result: StabilityRegion, union: Union) -> Separation:
-    """Return whether a union of conjunctions is the region; raises `NotShown` where it has roots or functions."""
-    if any(function_named(name) for part in union for condition in part for name in condition.value.names):
-        raise NotShown("conditions with roots or functions are not compared")
+    """Return whether a union of conjunctions is the region; raises `NotShown` where it has functions, or roots within."""
+    _require_rational(union)
     region = result.region
     if region is None:
         return _without_region(result, union)
@@ -247,9 +360,10 @@ def compare(result: StabilityRegion, union: Union) -> Separation:
 
 def _pieces(region: LineRegion | PlaneRegion, union: Union) -> Iterator[tuple[dict[str, Fraction], str, Height, bool]]:
     """Yield points of all pieces: the other coordinate, the name and value of this one, and whether it is stable there."""
-    further = irreducible(condition.value for part in union for condition in part)
+    further = irreducible(condition.value for part in union for condition in part if condition.end is None)
     if not isinstance(region, PlaneRegion):
-        yield from _along(region.critical, further, {}, region.name)
+        ends = {condition.end for part in union for condition in part if condition.end is not None}
+        yield from _along(region.critical, further, {}, region.name, ends)
         return
     plane = region.divided(further)
     x, y = region.names
@@ -263,14 +377,18 @@ def _pieces(region: LineRegion | PlaneRegion, union: Union) -> Iterator[tuple[di
 
 
 def _along(
-    critical: CriticalPolynomials, further: Sequence[Scalar], fixed: dict[str, Fraction], name: str
+    critical: CriticalPolynomials,
+    further: Sequence[Scalar],
+    fixed: dict[str, Fraction],
+    name: str,
+    own: Collection[RealNumber] = (),
 ) -> Iterator[tuple[dict[str, Fraction], str, Height, bool]]:
     """Yield the same along a line parallel to an axis."""
     lines = [_restricted(factor, fixed) for factor in critical.factors]
     others = [_restricted(factor, fixed) for factor in further]
     nowhere = any(line.is_zero for line in lines)
     ends = {root for line in lines for root in roots_of_scalar(line, name)}
-    points = sorted(ends.union(root for line in others for root in roots_of_scalar(line, name)))
+    points = sorted(ends.union(own, (root for line in others for root in roots_of_scalar(line, name))))
     for low, high in zip([None, *points], [*points, None], strict=True):
         sample = rational_between(low, high)
         stable = not nowhere and critical.is_stable({**fixed, name: sample})
@@ -305,16 +423,25 @@ def _sign(value: Scalar, fixed: Mapping[str, Fraction], name: str, height: Heigh
     )
 
 
+def _sign_of(condition: Inequality, fixed: Mapping[str, Fraction], name: str, height: Height) -> int:
+    """Return the sign of the value of a condition at a point."""
+    if condition.end is None:
+        return _sign(condition.value, fixed, name, height)
+    at = RealNumber.of(height) if isinstance(height, Fraction) else height
+    upwards = 1 if _linear(condition.value, name)[0].fraction() > 0 else -1
+    return upwards * ((at > condition.end) - (at < condition.end))
+
+
 def _holds(union: Union, fixed: Mapping[str, Fraction], name: str, height: Height) -> bool:
-    return any(all(c.holds(_sign(c.value, fixed, name, height)) for c in part) for part in union)
+    return any(all(c.holds(_sign_of(c, fixed, name, height)) for c in part) for part in union)
 
 
 def _on_a_curve(
     region: LineRegion | PlaneRegion, union: Union, fixed: Mapping[str, Fraction], name: str, height: Fraction
 ) -> bool:
     """Return whether a point lies on a curve of either side."""
-    values = [*region.critical.factors, *(condition.value for part in union for condition in part)]
-    return any(_sign(value, fixed, name, height) == 0 for value in values)
+    on_ours = any(_sign(factor, fixed, name, height) == 0 for factor in region.critical.factors)
+    return on_ours or any(_sign_of(condition, fixed, name, height) == 0 for part in union for condition in part)
 
 
 def _length(point: Mapping[str, Fraction]) -> Fraction:
@@ -444,12 +571,16 @@ def _slips_of_one(result: StabilityRegion, union: Union) -> Iterator[tuple[str, 
     if _equal(result, union, (tuple(Inequality(c * lead, ">", "") for c in rest),)):
         yield "only_positive_coefficients", "positive coefficients are necessary only, not sufficient"
     for text in result.stable_if:
-        for missing in read_conditions(text, None):  # there is none in False
+        try:
+            further = conditions_on(result, text, None)
+        except InputError:  # a root of a polynomial stands in it
+            continue
+        for missing in further:  # there is none in False
             if _same(result, ((*part, *missing),)):
                 yield "condition_missing", f"the condition {text} is missing"
                 return
     for i, condition in enumerate(part):
-        turned = Inequality(-condition.value, condition.operator, condition.text)
+        turned = condition._replace(value=-condition.value)
         if condition.operator != "!=" and _same(result, ((*part[:i], turned, *part[i + 1 :]),)):
             yield "half_plane", f"{condition.text} is the wrong half"
             return

@@ -16,8 +16,8 @@ from symobs.applications.checking.answers import DECIMAL
 from symobs.exact import Matrix, Scalar, TooLarge
 from symobs.exact.algebraic.enclosure import is_number, near
 from symobs.exact.algebraic.root_location import complex_roots
-from symobs.exact.algebraic.rounded_decimals import PrintedDecimal, decimals_in, rounds_to
-from symobs.formula.expression import parse_matrix, parse_scalar
+from symobs.exact.algebraic.rounded_decimals import PrintedDecimal, decimals_in, rounds_to, written_out
+from symobs.formula.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.problem.agreement import agrees
 from symobs.problem.expect import digits_of
 from symobs.stability.criteria.stability import stability
@@ -86,10 +86,10 @@ def _is_right(printed: Scalar, right: Scalar, digits: int | None, *, is_exact: b
     value = near(right, _BITS)
     if others or not sign or value is None:
         return rounds_to(printed, right if value is None else Scalar.of(value))
-    return _has_digits(decimal if sign > 0 else -decimal, value, digits)
+    return has_digits(decimal if sign > 0 else -decimal, value, digits)
 
 
-def _has_digits(decimal: PrintedDecimal, right: Fraction, digits: int | None) -> bool:
+def has_digits(decimal: PrintedDecimal, right: Fraction, digits: int | None) -> bool:
     """Return whether a decimal has the right digits: so many, else all that are written."""
     written = len(str(abs(decimal.units)))
     count = digits or (_HELD if written in _OF_DOUBLES else 0)
@@ -139,6 +139,18 @@ def poles_are_right(design: GainDesign, value: Matrix, digits: int) -> bool:
             return False
         placed.remove(nearest)
     return True
+
+
+def rounds_a_root(text: str, polynomial: Scalar, variable: str) -> bool:
+    """Return whether a number with decimals rounds a root of a polynomial with rational coefficients."""
+    if polynomial.names != {variable}:
+        return False
+    (printed, *_) = parse_poles(in_enough_digits(text, None), functions=True, rounding=True)
+    decimals = [decimal for part in (printed.real, printed.imaginary) for decimal in decimals_in(part).values()]
+    plain = complex(*(float(near(written_out(part)) or 0) for part in (printed.real, printed.imaginary)))
+    within = max((float(decimal.unit) / 2 for decimal in decimals), default=0)
+    roots = _roots(polynomial, variable)
+    return any(max(abs(root.real - plain.real), abs(root.imag - plain.imag)) <= within for root in roots)
 
 
 def _roots(polynomial: Scalar, variable: str) -> list[complex]:

@@ -15,7 +15,8 @@ from xml.etree.ElementTree import fromstring
 
 from symobs.applications.checking import Checked
 from symobs.applications.checking.checker import known_parts, marking_errors, other_polynomial, part_of_name
-from symobs.exact import Factored, Matrix, Scalar
+from symobs.exact import Factored, Matrix, Root, Scalar
+from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
 from symobs.formula.expression.source import shown
 from symobs.formula.phrases import PHRASES
 from symobs.formula.tree import Roots
@@ -113,6 +114,8 @@ def exported_part(view: ResultInConvention, field: str, name: str, weight: str) 
         return _gain(view, field, made)
     if isinstance(view.result, CompensatorDesign) and field == "F":
         return _compensator(view, made)
+    if (found := view.result.fields.get(field)) and isinstance(found, tuple) and isinstance(found[0], Root):
+        return _roots(view, found, made)
     if view.result.has_one_value(field):
         return _value(view, field, made)
     raise _refused(made["part"], "an exported grader does not hold what decides about it")
@@ -181,6 +184,24 @@ def _compensator(view: ResultInConvention, made: dict[str, Any]) -> ExportedPart
     return _part(data, ((value,),), 0)
 
 
+def _roots(view: ResultInConvention, roots: tuple[Root, ...], made: dict[str, Any]) -> ExportedPart:
+    """Return roots, poles or zeros: right where the polynomial of all of them is."""
+    polynomial = polynomial_of_roots(made["variable"], roots) if all(root.is_closed for root in roots) else None
+    if polynomial is None:
+        raise _refused(made["part"], "they have no closed form")
+    _require_rational(view, made["part"], (polynomial,))
+    texts_of_roots = ", ".join(str(root).replace("I", "%i") for root in roots)
+    phi = [str(entry) for entry in polynomial.coefficients(made["variable"])]
+    is_symbolic = _has_symbols((polynomial,), made["variable"])
+    return _part(
+        made | {"kind": "roots", "symbolic": is_symbolic, "roots": True, "phi": phi}, ((f"[{texts_of_roots}]",),)
+    )
+
+
+#: A number with square roots, as a text.
+_OF_ROOTS = re.compile(r"(?:sqrt|[0-9+\-*/() ])+")
+
+
 # -- other values -----------------------------------------------------------------------------------------------------
 
 
@@ -201,10 +222,12 @@ def _value(view: ResultInConvention, field: str, made: dict[str, Any]) -> Export
         raise _refused(made["part"], "this is no matrix and no number")
     rows = matrix.rows if matrix is not None else ((Scalar.of(value),),)
     entries = [entry for row in rows for entry in row]
-    _require_rational(view, made["part"], entries, made["variable"])
+    roots = [entry for entry in entries if entry.names and _OF_ROOTS.fullmatch(str(entry))]
+    _require_rational(view, made["part"], [entry for entry in entries if entry not in roots], made["variable"])
     function = any(made["variable"] in entry.names for entry in entries)
     data = made | {"kind": "value", "function": function, "exact": whole, "right": texts(rows)}
-    data["symbolic"] = _has_symbols(entries, made["variable"])
+    data["symbolic"] = _has_symbols([entry for entry in entries if entry not in roots], made["variable"])
+    data |= {"roots": True} if roots else {}
     return _part(data, tuple(map(tuple, rows)))
 
 
@@ -293,7 +316,7 @@ class ExerciseSet:
     @property
     def name(self) -> str:
         """A name for files and folders: letters, digits and `_` of the title, and the identifier."""
-        plain = "".join(c if c.isascii() and c.isalnum() else "_" for c in self.first.title.lower())
+        plain = "".join(c if c.isascii() and c.isalnum() else "_" for c in self.title.lower())
         words = "_".join(filter(None, plain.split("_")))[:40].strip("_")
         return f"{words or 'question'}_{self.identifier}"
 
@@ -316,7 +339,8 @@ def exercises(
         except InputError as error:
             errors += _named(error, path, several=len(paths) > 1)
             continue
-        found.append((exercise.structure if is_variant else exercise.structure + exercise.title, exercise))
+        named = str(path.parent.resolve()) if is_variant else exercise.title
+        found.append((exercise.structure + named, exercise))
     if errors:
         raise ProblemErrors(tuple(errors))
     return tuple(
@@ -346,9 +370,9 @@ def problem_files(sources: Sequence[str]) -> list[tuple[Path, bool]]:
         if path.name == MANIFEST:
             path = path.parent
         if not path.is_dir():
-            found.append((path, False))
+            found.append((path, _is_of_manifest(path.parent)))
             continue
-        is_variant = (path / MANIFEST).is_file()
+        is_variant = _is_of_manifest(path)
         folder = path / "variants" if is_variant and (path / "variants").is_dir() else path
         files = sorted(each for each in folder.iterdir() if each.suffix in {".toml", ".json"} and each.name != MANIFEST)
         files = [each for each in files if each.name != "sheet.toml"] if is_variant else files
@@ -360,6 +384,12 @@ def problem_files(sources: Sequence[str]) -> list[tuple[Path, bool]]:
         message = f"{len(found)} problems, more than {MOST_PROBLEMS}"
         raise InputError(message, where="SOURCE", repair="export them in several runs")
     return found
+
+
+def _is_of_manifest(folder: Path) -> bool:
+    """Return whether a folder holds the variants of a manifest, in it or beside it."""
+    folder = folder.resolve()
+    return any((each / MANIFEST).is_file() for each in (folder, *[folder.parent] * (folder.name == "variants")))
 
 
 def _text(path: Path) -> str:
@@ -600,8 +630,9 @@ def label(part: ExportedPart, begin: str = r"\(", end: str = r"\)") -> str:
 def instruction(part: ExportedPart, entries: str = "export_entries") -> str:
     """Return how to fill in an input, without its letter; `entries` is the phrase on numbers."""
     rows, columns = part.shape
-    if part.kind == "word":
-        return PHRASES["export_word"]
+    if part.kind in {"word", "roots"}:
+        return PHRASES["export_word" if part.kind == "word" else "export_list"]
+    entries = "export_roots" if part.data.get("roots") else entries
     said = PHRASES["export_function"].format(variable=part.data["variable"]) if part.is_function else PHRASES[entries]
     if (rows, columns) != (1, 1):
         said = f"{PHRASES['export_size'].format(rows=rows, columns=columns)} {said}"

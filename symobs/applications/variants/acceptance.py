@@ -33,7 +33,7 @@ from symobs.applications.variants.drawing import (
 )
 from symobs.applications.variants.parameters import RELATION, Poles, in_text, matrix_text, text_of, with_values
 from symobs.exact import Matrix
-from symobs.formula.expression import parse_matrix, parse_polynomial, parse_scalar
+from symobs.formula.expression import parse_matrix, parse_poles, parse_polynomial, parse_scalar
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import CertificateRejected, InputError, SymobsError
 from symobs.pages.formats.json import answer_object
@@ -209,6 +209,27 @@ def pole_kinds(data: Mapping[str, Any]) -> list[list[Any]]:
     return found
 
 
+def _is_slow(found: Candidate, own: Mapping[str, Any]) -> bool:
+    """Return whether an observer's error decays no faster than the loop; both sets of poles may be a file's `own`."""
+    given = found.data.get("specification", {})
+    halves = [key for key in ("control_poles", "observer_poles") if key in given]
+    if len(halves) < 2 or all(given[key] == own.get(key) for key in halves):
+        return False
+    is_discrete = bool(found.data.get("plant", {}).get("dt"))
+    control, observer = (_rates(str(_listed(given[key])), is_discrete) for key in halves)
+    return bool(control and observer) and max(observer) >= min(control)
+
+
+@lru_cache(maxsize=4096)
+def _rates(text: str, is_discrete: bool) -> tuple[Fraction, ...]:  # noqa: FBT001 - a key of the cache
+    """Return the real parts of poles, in discrete time the squares of their absolute values; none where they are no numbers."""
+    try:
+        parts = [(pole.real.fraction(), pole.imaginary.fraction()) for pole in parse_poles(text)]
+    except (SymobsError, ArithmeticError, ValueError):
+        return ()
+    return tuple(real**2 + imaginary**2 if is_discrete else real for real, imaginary in parts)
+
+
 # The cheap tests of a candidate, in Python's whole numbers: they cost a thousandth of solving it.
 #
 # What they find of gains is compared with what the engine finds; a difference is a bug of symobs.
@@ -231,6 +252,8 @@ def cheap(table: Table, found: Candidate, kind: Mapping[str, Any] | None = None)
     for relation in table.when:
         if not holds(relation, found):
             return Cheap(f"when: {relation}")
+    if _is_slow(found, table.base.get("specification", {})):
+        return Cheap("the observer is no faster than the control")
     constraints = table.constraints
     digits: Mapping[str, int] = constraints.get("digits", {})
     for name, rows in found.matrices.items():

@@ -80,13 +80,32 @@ def _moved(draws: Draws, shape: Shape, A: Rows, B: Rows, C: Rows) -> dict[str, R
 
 def compensator(draws: Draws, shape: Shape) -> Made:
     """Return a plant with one input and one output all of whose gains are whole, and poles for both halves."""
+    return Made(_moved(draws, shape, *unit_system(draws, shape)), _both_poles(draws, shape, shape["order"]))
+
+
+def _both_poles(draws: Draws, shape: Shape, order: int) -> dict[str, Poles]:
+    """Return poles of the control, and poles of the observer left of them; distinct ones where there is a choice of them."""
+    control = _chosen(draws["control poles"], shape["control_poles"], order)
+    low, high = shape["observer_poles"]
+    left = min(high, control.pairs[-1][0] - 1)
+    observer = _chosen(draws["observer poles"], (low, left if left >= low else high), order)
+    return {"control_poles": control, "observer_poles": observer}
+
+
+def _chosen(draw: Draw, ends: Sequence[int], count: int) -> Poles:
+    low, high = ends
+    if high - low < count:
+        return _some_poles(draw, ends, count)
+    return Poles(tuple(sorted(((value, 0) for value in draw.some_of(range(low, high + 1), count)), reverse=True)))
+
+
+def one_half(draws: Draws, shape: Shape) -> Made:
+    """Return the same plant, and poles of which a task reads those of one half."""
     plant = _moved(draws, shape, *unit_system(draws, shape))
-    order = shape["order"]
-    asked = {
-        "control_poles": _some_poles(draws["control poles"], shape["control_poles"], order),
-        "observer_poles": _some_poles(draws["observer poles"], shape["observer_poles"], order),
-    }
-    return Made(plant, asked)
+    names = ("control_poles", "observer_poles")
+    return Made(
+        plant, {name: _some_poles(draws[name.replace("_", " ")], shape[name], shape["order"]) for name in names}
+    )
 
 
 def member(draws: Draws, shape: Shape) -> Made:
@@ -170,10 +189,7 @@ def modal(draws: Draws, shape: Shape) -> Made:
 def second_order(draws: Draws, shape: Shape) -> Made:
     """Return the controllable form of a plant of second order with whole roots σ₁, σ₂, or σ ± iω."""
     chi = of_poles(_plant_poles(draws["plant poles"], {**shape, "order": 2}).pairs)
-    asked = {
-        name: _some_poles(draws[name.replace("_", " ")], shape[name], 2) for name in ("control_poles", "observer_poles")
-    }
-    return Made({"A": companion(chi), "B": ((0,), (1,)), "C": ((1, 0),)}, asked)
+    return Made({"A": companion(chi), "B": ((0,), (1,)), "C": ((1, 0),)}, _both_poles(draws, shape, 2))
 
 
 def region(draws: Draws, shape: Shape) -> Made:
@@ -241,6 +257,8 @@ def _of_full_rank(draw: Draw, height: int, width: int) -> Rows:
 
 
 _POLES = {"plant_poles": [-3, 3], "control_poles": [-3, -1], "observer_poles": [-4, -1]}
+#: Of control and observer together: those of the observer have to lie left of the others.
+_BOTH = {"plant_poles": [-3, 3], "control_poles": [-5, -1], "observer_poles": [-9, -2]}
 _FULL = {"order": 3, **_POLES, "pairs": 0, "steps": 2}
 _MODAL = {"order": 3, "plant_poles": [-3, 3], "steps": 2}
 _DECAYING = {"order": 2, "plant_poles": [-4, -1], "steps": 1}
@@ -250,10 +268,10 @@ _PARTS = {"sizes": [1, 1, 1, 0], "plant_poles": [-4, 4], "steps": 2}
 
 #: Each construction: what makes it, and the keys of its shape with the values they have where nothing is said.
 CONSTRUCTIONS: dict[str, tuple[Callable[[Draws, Shape], Made], dict[str, Any]]] = {
-    "compensator": (compensator, _FULL),
-    "observer": (compensator, _FULL),
-    "state_feedback": (compensator, _FULL),
-    "canonical_form": (compensator, _FULL),
+    "compensator": (compensator, {**_FULL, **_BOTH}),
+    "observer": (one_half, _FULL),
+    "state_feedback": (one_half, _FULL),
+    "canonical_form": (one_half, _FULL),
     "member": (member, _MEMBER),
     "gain": (member, {**_MEMBER, "outputs": 1}),
     "decomposition": (decomposition, _PARTS),
@@ -261,6 +279,6 @@ CONSTRUCTIONS: dict[str, tuple[Callable[[Draws, Shape], Made], dict[str, Any]]] 
     "modal": (modal, _MODAL),
     "gramian": (modal, _DECAYING),
     "matrix_exponential": (modal, {**_DECAYING, "plant_poles": [-3, 2]}),
-    "second_order": (second_order, {**_POLES, "pairs": 0}),
+    "second_order": (second_order, {**_BOTH, "pairs": 0}),
     "region": (region, {"region": "triangle", "corners": [-5, 5]}),
 }

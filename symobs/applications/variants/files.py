@@ -195,6 +195,8 @@ class Variant(NamedTuple):
     answers: list[Any]
     profile: Mapping[str, Any]
     expect: Mapping[str, Any]
+    #: The title without the number of the variant.
+    own_title: str = ""
 
     @property
     def name(self) -> str:
@@ -205,6 +207,11 @@ class Variant(NamedTuple):
     def text(self) -> str:
         """The problem file: numbers in place, and the checked answers as what is expected."""
         return toml_text({**self.data, "variant": self.id, "expect": self.expect})
+
+    @property
+    def untitled(self) -> str:
+        """The same under its title without the number: the problem file for a page that says which variant it is."""
+        return self._replace(data={**self.data, "title": self.own_title}).text
 
     @property
     def certificates(self) -> int:

@@ -252,9 +252,8 @@ class Variants:
         title = phrases["variant_of" if own_title else "variant"].format(title=own_title, number=index)
         data = {**found.data, "title": title[:1].upper() + title[1:]}
         own = {key: value for key, value in data.items() if key != "expect"}
-        return Variant(
-            index, data_key(found)[:12], found.number, own, result["answers"], result["profile"], result["expect"]
-        )
+        told = (result["answers"], result["profile"], result["expect"])
+        return Variant(index, data_key(found)[:12], found.number, own, *told, own_title)
 
     def _measure_base(self, force: Workforce) -> None:
         """Take the profile of the file's own plant as the one to be like; no variant is the same as it."""

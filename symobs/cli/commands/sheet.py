@@ -45,6 +45,13 @@ _WORST_FIRST = (EXIT_BUG, InputError.exit_code, EXIT_NO, EXIT_UNDECIDED)
 @click.option("--title", default="", metavar="TEXT", help="The title of the sheet.")
 @click.option("--questions", is_flag=True, help="The questions only.")
 @click.option("--solutions", is_flag=True, help="The solutions only; they begin with the data.")
+@click.option(
+    "--versions",
+    type=click.IntRange(2, 26),
+    metavar="N",
+    help="So many versions A, B, ... of the questions, with other variants of files with [variants] and in another order, "
+    "and one key to all of them with the points of each step.",
+)
 @options(
     "detail", "references", "language", "digits", "exact", "details", "copy", "live", "templates", "convention", *LIMITS
 )
@@ -55,6 +62,7 @@ def command(
     title: str,
     questions: bool,  # noqa: FBT001 - click's signature
     solutions: bool,  # noqa: FBT001
+    versions: int | None,
     convention_name: str | None,
     timeout: float | None,
     memory: float | None,
@@ -87,7 +95,7 @@ def command(
         **page_options,
     )
     header = _header(file, target, chosen, files[0])
-    texts = list(zip(file.problems, file.texts, strict=True))
+    texts = list(zip(file.problems, file.texts, strict=True)) if versions is None else _versions(file, versions)
     if timeout is not None or memory is not None:
         tasks()  # what all problems need is imported once, not in the process of each
     entries: list[SheetEntry] = []
@@ -101,6 +109,8 @@ def command(
         for message in messages:
             write_message(message if message.startswith(f"{name}, ") else f"{name}: {message}")
     progress.say("typesetting" if runs_tex(wanted.format.name, target) else "writing")
+    if versions is not None:
+        entries = [replace(entry, number=place % len(file.problems) + 1) for place, entry in enumerate(entries)]
     halves = (wanted.questions, wanted.solutions)
     offered: dict[str, Any] = {"web": wanted.web, "detail": wanted.detail}
     sheet = Sheet(title or file.title, tuple(entries), *halves, wanted.templates, header, **offered)
@@ -108,6 +118,13 @@ def command(
     progress.clear()
     write(whole, target)
     sys.exit(next((code for code in _WORST_FIRST if code in codes), 0))
+
+
+def _versions(file: SheetFile, count: int) -> list[tuple[SheetProblem, str]]:
+    """Return the problems of all versions, with their texts."""
+    from symobs.cli.shared.sheet_versions import versions_of  # noqa: PLC0415 - for sheets with versions only
+
+    return versions_of(file, count)
 
 
 # -- before work starts -----------------------------------------------------------------------------------------------

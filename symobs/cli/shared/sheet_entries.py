@@ -176,7 +176,7 @@ def _said_failed(entry: SheetEntry, phrase: str, wanted: Wanted) -> SheetEntry:
 
 def _empty(number: int, asked: SheetProblem) -> SheetEntry:
     title = Path(asked.file).stem if asked.file != "-" else ""
-    return SheetEntry(number, asked.file, title, points=asked.points, hint=asked.hint)
+    return SheetEntry(number, asked.file, title, points=asked.points, hint=asked.hint, version=asked.version)
 
 
 def _entry(number: int, asked: SheetProblem, text: str, wanted: Wanted, report_progress: Progress) -> Found:
@@ -207,9 +207,15 @@ def _worked_out(entry: SheetEntry, asked: SheetProblem, text: str, wanted: Wante
         results = problem.solve()
         document = problem.document(results)
         if wanted.solutions:
-            is_below = wanted.is_exam and wanted.questions
-            without_source = replace(document, source="", text="") if is_below else document
-            entry = replace(entry, solution=_part(without_source, replace(wanted, web=of_problem(wanted.web, data))))
+            shown = document
+            if asked.version:
+                from symobs.cli.shared.sheet_versions import steps_of  # noqa: PLC0415 - for keys to versions only
+
+                steps = steps_of(problem, results, asked.points, language_named(entry.language))
+                shown = replace(document, handout=(steps,))
+            elif wanted.is_exam and wanted.questions:  # it stands below its question
+                shown = replace(document, source="", text="")
+            entry = replace(entry, solution=_part(shown, replace(wanted, web=of_problem(wanted.web, data))))
         if wanted.questions and wanted.final_answers:
             entry = replace(entry, answer=_part(document, replace(wanted, detail=FINAL, web=wanted.web.of_question)))
     except Exception as error:  # noqa: BLE001 - as above
@@ -230,7 +236,7 @@ def _handout(asked: SheetProblem, parts: int, wanted: Wanted, language: Language
     """Return what a sheet adds to each part of a question: its points, and room for answers where none are given."""
     each = asked.points if len(asked.points) == parts > 1 else ()
     words = [points_in_words((points,), language) for points in each] or [""] * parts
-    space = None if wanted.solutions else asked.space
+    space = None if wanted.solutions and not asked.version else asked.space
     return tuple((word, space) for word in words) if each or space else ()
 
 

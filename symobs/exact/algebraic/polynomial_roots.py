@@ -148,7 +148,7 @@ def _unwrapped(text: str) -> str:
 def factored(value: Scalar, variable: str, *, monic: bool = True) -> Factored:
     """Return the factored form of a rational function in the variable; the other factors form the unit.
 
-    Factors are made monic; with `monic` False only where their leading coefficient is a number.
+    Factors are made monic; with `monic` False their coefficients are whole, without a common divisor.
     """
     unit, factors = value.factors()
     kept: list[tuple[Scalar, int]] = []
@@ -156,9 +156,7 @@ def factored(value: Scalar, variable: str, *, monic: bool = True) -> Factored:
         if factor.degree(variable) <= 0:
             unit = unit * factor**power
             continue
-        lead = factor.coefficients(variable)[0]
-        if not (monic or lead.is_constant):
-            lead = Scalar.of(1)
+        lead = factor.coefficients(variable)[0] if monic else Scalar.of(1)
         unit = unit * lead**power
         kept.append((factor / lead, power))
     kept.sort(key=lambda item: (item[0].degree(variable), item[0].size))

@@ -73,15 +73,17 @@ class Beamer:
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the LaTeX of all problems' slides, those of each chapter after its title."""
-        head = head_of(sheet)
-        decks = [{**_title(sheet.heading), "head": head if any(head.values()) else None}]
-        for chapter in sheet.chapters():
-            decks += [_title(chapter.title)] if chapter.title else []
-            for item in chapter.items:
-                points = f" ({item.points.replace(' ', '~')})" if item.points else ""
-                slides = {**_title(""), "source": escape(item.text), **(item.part or {})}
-                slides["title"] = f"{item.label} {escape(item.title)}{points}".strip()
-                decks.append(_on_one_slide(slides) if item.part and item.kind == "questions" else slides)
+        decks: list[dict[str, Any]] = []
+        for part in sheet.apart:
+            head = head_of(part)
+            decks.append({**_title(part.heading), "head": head if any(head.values()) else None})
+            for chapter in part.chapters():
+                decks += [_title(chapter.title)] if chapter.title else []
+                for item in chapter.items:
+                    points = f" ({item.points.replace(' ', '~')})" if item.points else ""
+                    slides = {**_title(""), "source": escape(item.text), **(item.part or {})}
+                    slides["title"] = f"{item.label} {escape(item.title)}{points}".strip()
+                    decks.append(_on_one_slide(slides) if item.part and item.kind == "questions" else slides)
         return _slides(decks, language_named(sheet.language), sheet.templates)
 
 

@@ -167,26 +167,11 @@ class Html:
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as one page, its contents linked to questions and solutions."""
-        pieces = list(_head(sheet))
-        pieces += [switch(sheet.web, sheet.detail, sheet.language)] if sheet.web.details and sheet.has_solutions else []
-        pieces += [_contents(sheet)] if sheet.is_long else []
-        for chapter in sheet.chapters():
-            pieces += [f'<h2 class="chapter" id="{chapter.name}">{chapter.title}</h2>'] if chapter.title else []
-            for item in chapter.items:
-                points = f' <span class="points">{item.points}</span>' if item.points else ""
-                kind = "problem apart" if sheet.header.is_exam and item.kind == "questions" else "problem"
-                heading = f"{item.label} {plain(item.title)}{points}" if item.title else f"{item.label}{points}"
-                pieces.append(f'<h3 class="{kind}" id="{item.place}">{heading}</h3>')
-                body = item.part or f"<p>{plain(item.text)}</p>"
-                placed = body.replace(_SOMEWHERE, f"{item.place}-")
-                pieces.append(
-                    folded(placed, sheet.language)
-                    if item.part and sheet.web.details and item.kind == "solutions"
-                    else placed
-                )
+        first, *further = ("\n".join(_pieces(part)) for part in sheet.apart)
+        whole = "\n".join([first, *(f'<section class="apart">\n{each}\n</section>' for each in further)])
         return page(
             sheet.heading,
-            "\n".join(pieces),
+            whole,
             sheet.web,
             language=sheet.language,
             has_picture=sheet.header.logo is not None,
@@ -205,6 +190,27 @@ class HtmlFragment:
         writer = HtmlWriter(printer_for(document, MathmlPrinter), prefix=None, level=2)
         body = writer.body(narrate(document))
         return f'<div class="symobs">\n<style>\n{style()}</style>\n{body}\n</div>\n'
+
+
+def _pieces(sheet: Sheet) -> Iterator[str]:
+    """Yield the pieces of a sheet: its head, its table of contents, and its chapters."""
+    yield from _head(sheet)
+    if sheet.web.details and sheet.has_solutions:
+        yield switch(sheet.web, sheet.detail, sheet.language)
+    if sheet.is_long:
+        yield _contents(sheet)
+    for chapter in sheet.chapters():
+        if chapter.title:
+            yield f'<h2 class="chapter" id="{chapter.name}">{chapter.title}</h2>'
+        for item in chapter.items:
+            points = f' <span class="points">{item.points}</span>' if item.points else ""
+            kind = "problem apart" if sheet.header.is_exam and item.kind == "questions" else "problem"
+            heading = f"{item.label} {plain(item.title)}{points}" if item.title else f"{item.label}{points}"
+            yield f'<h3 class="{kind}" id="{item.place}">{heading}</h3>'
+            body = item.part or f"<p>{plain(item.text)}</p>"
+            placed = body.replace(_SOMEWHERE, f"{item.place}-")
+            is_folded = item.part and sheet.web.details and item.kind == "solutions"
+            yield folded(placed, sheet.language) if is_folded else placed
 
 
 def _head(sheet: Sheet) -> Iterator[str]:

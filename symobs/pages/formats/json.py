@@ -52,6 +52,7 @@ class Json:
         problems = []
         for entry in sheet.entries:
             problem: dict[str, Any] = {"file": entry.file, "title": entry.title}
+            problem |= {"version": entry.version} if entry.version else {}
             if entry.points:
                 problem["points"] = [decimal_of(points) for points in entry.points]
             if entry.hint and sheet.has_questions:

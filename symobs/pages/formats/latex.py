@@ -109,8 +109,24 @@ def has_drawings(blocks: Sequence[Block]) -> bool:
 
 def typeset_sheet(sheet: Sheet, template: str) -> str:
     """Return a sheet in a template; the values of a problem are those of its part, its number, and its failure."""
+    language, parts = language_named(sheet.language), [_values_of_sheet(each) for each in sheet.apart]
+    chapters = [chapter for part in parts for chapter in part["chapters"]]
+    values = {
+        **parts[0],
+        "parts": parts,
+        "is_exam": sheet.header.is_exam,
+        "kinds": sheet.kinds,
+        "contents": sheet.words["contents"] if sheet.is_long else "",
+        "words": sheet.words,
+        "drawings": any(problem.get("drawings") for chapter in chapters for problem in chapter["problems"]),
+        "babel": language.words["babel"],
+    }
+    return fill(template, values, folder=sheet.templates)
+
+
+def _values_of_sheet(sheet: Sheet) -> dict[str, Any]:
+    """Return the title of a sheet, its head, its table of points and its chapters for a template."""
     chapters: list[dict[str, Any]] = []
-    language = language_named(sheet.language)
     for chapter in sheet.chapters():
         problems: list[dict[str, Any]] = []
         for item in chapter.items:
@@ -119,19 +135,8 @@ def typeset_sheet(sheet: Sheet, template: str) -> str:
             place = {"number": item.entry.number, "kind": item.kind, "place": item.place}
             problems.append({"source": "", "conventions": "", "body": "", **(item.part or {}), **slots, **place})
         chapters.append({"name": chapter.name, "title": chapter.title, "problems": problems})
-    values = {
-        "title": escape(sheet.heading).strip(),
-        "head": head_of(sheet),
-        "totals": sheet.totals,
-        "is_exam": sheet.header.is_exam,
-        "chapters": chapters,
-        "kinds": sheet.kinds,
-        "contents": sheet.words["contents"] if sheet.is_long else "",
-        "words": sheet.words,
-        "drawings": any(problem.get("drawings") for chapter in chapters for problem in chapter["problems"]),
-        "babel": language.words["babel"],
-    }
-    return fill(template, values, folder=sheet.templates)
+    title = escape(sheet.heading).strip()
+    return {"title": title, "head": head_of(sheet), "totals": sheet.totals, "chapters": chapters}
 
 
 def head_of(sheet: Sheet) -> dict[str, Any]:

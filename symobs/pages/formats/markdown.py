@@ -85,13 +85,15 @@ class Markdown:
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as Markdown; forges make a table of contents of its headings by themselves."""
-        pieces = list(_head(sheet))
-        for chapter in sheet.chapters():
-            pieces += [f"## {chapter.title}"] if chapter.title else []
-            for item in chapter.items:
-                points = f" ({item.points})" if item.points else ""
-                pieces.append(f"### {item.label} {plain(item.title)}".strip() + points)
-                pieces.append(item.part or paragraph(plain(item.text)))
+        pieces: list[str] = []
+        for part in sheet.apart:
+            pieces += _head(part)
+            for chapter in part.chapters():
+                pieces += [f"## {chapter.title}"] if chapter.title else []
+                for item in chapter.items:
+                    points = f" ({item.points})" if item.points else ""
+                    pieces.append(f"### {item.label} {plain(item.title)}".strip() + points)
+                    pieces.append(item.part or paragraph(plain(item.text)))
         return "\n\n".join(pieces) + "\n"
 
 

@@ -70,15 +70,17 @@ class Text:
 
     def sheet(self, sheet: Sheet) -> str:
         """Return the sheet as plain text."""
-        pieces = list(_head(sheet))
-        for chapter in sheet.chapters():
-            pieces += [underlined(chapter.title, "=", WIDTH)] if chapter.title else []
-            for item in chapter.items:
-                label = f"{sheet.words['problem']} {item.label}" if item.label[:1].isdigit() else item.label
-                whole = f"{label} {printable(item.title)}"
-                points = f" ({item.points})" if item.points else ""
-                heading = underlined(wrapped(f"{whole}{points}", WIDTH), "=", WIDTH)
-                pieces += [heading, item.part or wrapped(printable(item.text), WIDTH)]
+        pieces: list[str] = []
+        for part in sheet.apart:
+            pieces += _head(part)
+            for chapter in part.chapters():
+                pieces += [underlined(chapter.title, "=", WIDTH)] if chapter.title else []
+                for item in chapter.items:
+                    label = f"{sheet.words['problem']} {item.label}" if item.label[:1].isdigit() else item.label
+                    whole = f"{label} {printable(item.title)}"
+                    points = f" ({item.points})" if item.points else ""
+                    heading = underlined(wrapped(f"{whole}{points}", WIDTH), "=", WIDTH)
+                    pieces += [heading, item.part or wrapped(printable(item.text), WIDTH)]
         return "\n\n".join(pieces) + "\n"
 
 

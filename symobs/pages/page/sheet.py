@@ -6,6 +6,7 @@ question or solution, and `sheet(sheet)` returns the whole.  Parts are made one 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import date
 from fractions import Fraction
 from functools import cached_property
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.formula.phrases.languages import Language, language_named
 from symobs.ground.dataclass import dataclass
-from symobs.pages.page.blocks import AnswerSpace, Paragraph
+from symobs.pages.page.blocks import AnswerSpace, Columns, Paragraph
 from symobs.pages.page.prose import joined
 from symobs.tasks.result.output_methods import PLAIN, WebPage
 
@@ -94,6 +95,8 @@ class SheetEntry:
     answer: Any = None
     #: The code of the language of its parts.
     language: str = ""
+    #: The letter of the version that it belongs to, where a sheet has versions.
+    version: str = ""
 
 
 @dataclass
@@ -111,7 +114,7 @@ class Item:
     @property
     def place(self) -> str:
         """The name of its place on the sheet."""
-        return f"{self.kind}-{self.entry.number}"
+        return f"{self.kind}-{self.entry.version}{self.entry.number}"
 
 
 @dataclass
@@ -146,7 +149,7 @@ class Sheet:
     @property
     def is_long(self) -> bool:
         """Whether the sheet has a table of contents."""
-        return len(self.entries) > WITHOUT_CONTENTS and not self.header.is_exam
+        return len(self.entries) > WITHOUT_CONTENTS and not self.header.is_exam and not self.entries[0].version
 
     @cached_property
     def words(self) -> dict[str, str]:
@@ -156,6 +159,22 @@ class Sheet:
     @property
     def _language(self) -> Language:
         return language_named(self.language)
+
+    @property
+    def apart(self) -> tuple[Sheet, ...]:
+        """The sheets that it consists of: itself, or the questions of each version and the key to all of them."""
+        versions = tuple(dict.fromkeys(entry.version for entry in self.entries))
+        if len(versions) < 2:
+            return (self,)
+        found = []
+        for version in versions if self.has_questions else ():
+            own = tuple(entry for entry in self.entries if entry.version == version)
+            found.append(replace(self, title=self._titled(version), entries=own, has_solutions=False))
+        title = ", ".join(filter(None, (self.title, self.words["solutions"])))
+        return (*found, *((replace(self, title=title, has_questions=False),) if self.has_solutions else ()))
+
+    def _titled(self, version: str) -> str:
+        return ", ".join(filter(None, (self.title, f"{self.words['version']} {version}")))
 
     @property
     def heading(self) -> str:
@@ -209,6 +228,14 @@ class Sheet:
         """Return the chapters: questions, hints and final answers where there are any, and solutions."""
         is_paper = self.header.is_exam and not self.has_solutions  # what students of an exam get
         ends = {"hints": self._hints(), "answers": self._answers()} if self.has_questions and not is_paper else {}
+        if self.entries[0].version and not self.has_questions:
+            items: dict[str, list[Item]] = {
+                version: [] for version in dict.fromkeys(entry.version for entry in self.entries)
+            }
+            for item in self._items("solutions"):
+                items[item.entry.version].append(item)
+            titles = {version: f"{self.words['version']} {version}" for version in items}
+            return tuple(Chapter(f"solutions-{name}", titles[name], tuple(items[name])) for name in items)
         if self.header.is_exam:
             both = [self._items(kind) for kind in self.kinds]
             named = {"problems": tuple(item for items in zip(*both, strict=True) for item in items), **ends}
@@ -219,7 +246,7 @@ class Sheet:
 
     def _items(self, kind: str) -> Iterator[Item]:
         """Yield the questions or the solutions; one below its question needs neither title nor points."""
-        is_below = self.header.is_exam and kind == "solutions"
+        is_below = self.header.is_exam and kind == "solutions" and self.has_questions
         for entry in self.entries:
             part = entry.question if kind == "questions" else entry.solution
             label = f"{self.words['one_solution']} {entry.number}" if is_below else f"{entry.number}."
@@ -243,10 +270,13 @@ class Sheet:
 # Points and room for answers, added to the parts of a question on a sheet.
 
 
-def handed_out(blocks: Sequence[Block], parts: Sequence[Part]) -> tuple[Block, ...]:
-    """Return a question with points and room for each of its parts, its last paragraphs."""
+def handed_out(blocks: Sequence[Block], parts: Sequence[Part | Columns]) -> tuple[Block, ...]:
+    """Return a question with points and room for each of its parts, its last paragraphs; a solution below its points."""
+    if parts and isinstance(parts[0], Columns):
+        title, *below = blocks
+        return (title, parts[0], *below)
     paragraphs = [place for place, block in enumerate(blocks) if isinstance(block, Paragraph)]
-    added = dict(zip(paragraphs[-len(parts) :], parts, strict=True)) if parts else {}
+    added: dict[int, Any] = dict(zip(paragraphs[-len(parts) :], parts, strict=True)) if parts else {}
     written: list[Block] = []
     for place, block in enumerate(blocks):
         points, space = added.get(place, ("", None))

@@ -36,7 +36,7 @@ def quiz(questions: Sequence[str]) -> str:
 
 def category(each: ExerciseSet) -> str:
     """Return the category of a question and its variants; a slash in its name is written twice."""
-    name = xml_text(each.first.title.replace("/", "//"))
+    name = xml_text(each.title.replace("/", "//"))
     return f'<question type="category"><category><text>$course$/symobs/{name}</text></category></question>'
 
 

@@ -37,6 +37,9 @@ _CONTENT = {
     "3.0": "http://www.imsglobal.org/xsd/qti/qtiv3p0/imscp_v1p1",
     "2.1": "http://www.imsglobal.org/xsd/imscp_v1p1",
 }
+_MATHML = "{http://www.w3.org/1998/Math/MathML}"
+#: Attributes of formulas, and the elements of MathML 3 that have them; browsers take them everywhere.
+_STYLES = {"displaystyle": (f"{_MATHML}mstyle", f"{_MATHML}mtable"), "scriptlevel": (f"{_MATHML}mstyle",)}
 _DATE = (1980, 1, 1, 0, 0, 0)
 
 
@@ -139,7 +142,7 @@ def _item(exercise: Exercise, name: str) -> Element:
 
 
 def _division(xhtml: str) -> Element:
-    """Return XHTML as an element; the rows of a table stand in a body, which QTI demands."""
+    """Return XHTML as an element, rows of a table in a body and styles of formulas where MathML 3 has them: QTI demands it."""
     found = fromstring(f"<div>{xhtml}</div>")  # noqa: S314 - our own text
     for table in found.iter("table"):
         rows = table.findall("tr")
@@ -147,6 +150,12 @@ def _division(xhtml: str) -> Element:
             table.remove(row)
         if rows:
             SubElement(table, "tbody").extend(rows)
+    for part in [each for each in found.iter() if each.tag.startswith(_MATHML)]:
+        moved = {name: part.attrib.pop(name) for name in _STYLES.keys() & part.keys() if part.tag not in _STYLES[name]}
+        if moved:
+            style = Element(f"{_MATHML}mstyle", moved)
+            style.text, part.text, style[:] = part.text, None, list(part)
+            part[:] = [style]
     return found
 
 

@@ -77,9 +77,23 @@ sy_easy$k(sy_M, sy_R) := is(sy_filled$k(sy_M)=0) or is(2*sy_filled$k(sy_M)<sy_fi
 """
 
 
+#: Whether two numbers with square roots are equal: simplified, or where none of them is rational by their digits, which are
+#: those of numbers that a student writes with roots.
+_EQUAL = """
+sy_near(sy_a, sy_b) := if ratnump(ratsimp(sy_a)) or ratnump(ratsimp(sy_b)) then false
+    else if numberp(float(sy_a-sy_b)) then is(abs(float(sy_a-sy_b))<1.0e-12) else false;
+sy_equal(sy_a, sy_b) := if is(radcan(ratsimp(sy_a-sy_b))=0) then true else sy_near(sy_a, sy_b);
+"""
+
+
+#: The wrong entries of a matrix, and of one with square roots.
+_OFF = "sy_off$k(sy_L) := length(sublist(flatten(args(sy_L-ta$k)), lambda([sy_c], not(is(ratsimp(sy_c)=0)))));"
+_OFF_ROOTS = """sy_miss$k(sy_L, sy_i, sy_j) := if sy_equal(sy_L[sy_i,sy_j], ta$k[sy_i,sy_j]) then 0 else 1;
+sy_off$k(sy_L) := apply("+", flatten(makelist(makelist(sy_miss$k(sy_L, sy_i, sy_j), sy_j, 1, $columns), sy_i, 1, $rows)));"""
+
+
 #: The functions of a matrix of which there is one.
 _MATRIX = """
-sy_off$k(sy_L) := length(sublist(flatten(args(sy_L-ta$k)), lambda([sy_c], not(is(ratsimp(sy_c)=0)))));
 sy_same$k(sy_L) := is(sy_off$k(sy_L)=0);
 sy_judge$k(sy_L) := if sy_same$k(sy_L) then $RIGHT
     else if sy_same$k(-sy_L) then $SIGN
@@ -92,10 +106,13 @@ def variables(each: ExerciseSet) -> str:
     """Return the question variables: the data of the variant that the seed deploys, and the functions that judge."""
     count = len(each.variants)
     lines = [f"sy_n: mod(stack_seed-1, {count})+1;"]
-    for k, part in enumerate(each.first.parts, 1):
+    for k in range(1, len(each.first.parts) + 1):
         of_variants = [exercise.parts[k - 1] for exercise in each.variants]
         lines += [f"{name}{k}: [{', '.join(values)}][sy_n];" for name, values in _data(of_variants).items()]
-        lines += _functions(part, k)
+        lines += _functions(max(of_variants, key=lambda each: bool(each.data.get("roots"))), k)
+    values = (part for exercise in each.variants for part in exercise.parts if part.kind == "value")
+    if any(part.data.get("roots") for part in values):
+        lines[1:1] = _EQUAL.replace("\n    ", " ").strip().split("\n")
     return "\n".join(lines)
 
 
@@ -120,8 +137,18 @@ def feedback_variables(each: ExerciseSet, k: int) -> str:
             return _compensator(each, k)
         case "word":
             return f"sy_k: if is(ans{k}=sy_w{k}) then {RIGHT} else {WRONG};"
+        case "roots":
+            return "\n".join(
+                [
+                    f"sy_l: if setp(ans{k}) or listp(ans{k}) then args(ans{k}) else [ans{k}];",
+                    f'sy_p: apply("*", map(lambda([sy_r], {part.data["variable"]}-sy_r), sy_l));',
+                    f"sy_k: if is(radcan(ratsimp(expand(sy_p)-sy_phi{k}))=0) then {RIGHT} else {WRONG};",
+                ]
+            )
     if part.shape == (1, 1):
         equal, opposite = f"is(ratsimp(ans{k}-ta{k})=0)", f"is(ratsimp(ans{k}+ta{k})=0)"
+        if any(exercise.parts[k - 1].data.get("roots") for exercise in each.variants):
+            equal, opposite = f"sy_equal(ans{k}, ta{k})", f"sy_equal(-ans{k}, ta{k})"
         return f"sy_k: if {equal} then {RIGHT} else if {opposite} then {SIGN} else {WRONG};"
     return "\n".join([f"sy_z: {_fits(f'ans{k}', part.shape)};", f"sy_k: if sy_z then sy_judge{k}(ans{k}) else {SIZE};"])
 
@@ -143,7 +170,7 @@ def _data(parts: Sequence[ExportedPart]) -> dict[str, list[str]]:
     names = {"gain": ("A", "C"), "compensator": ("A", "B", "C", "right_K", "right_L")}.get(first["kind"], ())
     for name in names:
         found[f"sy_{name}"] = [matrix(part.data[name]) for part in parts]
-    if first["kind"] in {"gain", "compensator"}:
+    if first["kind"] in {"gain", "compensator", "roots"}:
         found["sy_phi"] = [_polynomial(part.data["phi"], part.data["variable"]) for part in parts]
     if first["kind"] == "compensator":
         found["sy_D"] = [part.data["D"][0][0] for part in parts]
@@ -216,7 +243,9 @@ def _of_compensator(part: ExportedPart, k: int) -> list[str]:
 
 def _of_matrix(part: ExportedPart, k: int) -> list[str]:
     """Return the verdict on a matrix of which there is one."""
-    return _filled(_MATRIX, part, k, {"square": _square(part, "same", k)})
+    rows, columns = part.shape
+    off = _OFF_ROOTS if part.data.get("roots") else _OFF
+    return _filled(f"{off}{_MATRIX}", part, k, {"square": _square(part, "same", k), "rows": rows, "columns": columns})
 
 
 def _square(part: ExportedPart, test: str, k: int) -> str:
@@ -394,7 +423,7 @@ def _nodes(each: ExerciseSet, part: ExportedPart) -> list[tuple[int, str, Fracti
         return Fraction(marks["credit"].get(slip, 0))
 
     found = [(RIGHT, "ok", Fraction(1), "")]
-    if part.kind == "word":
+    if part.kind in {"word", "roots"}:
         return found
     if part.kind == "compensator":
         follow = Fraction(marks["follow_through"])

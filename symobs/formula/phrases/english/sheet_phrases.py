@@ -16,6 +16,9 @@ PHRASES: dict[str, str] = {
     "sheet_hints": "Hints",
     "sheet_answers": "Final answers",
     "sheet_one_solution": "Solution",
+    "sheet_version": "Version",
+    "sheet_step": "Step",
+    "sheet_verdict": "yes or no",
 }
 
 #: They claim nothing.
@@ -33,7 +36,10 @@ NAMING = (
     "sheet_hints",
     "sheet_answers",
     "sheet_one_solution",
+    "sheet_version",
+    "sheet_step",
+    "sheet_verdict",
 )
 
 #: They go on with a sentence, or stand within one.
-CONTINUES = ("sheet_point", "sheet_points")
+CONTINUES = ("sheet_point", "sheet_points", "sheet_verdict")

@@ -134,6 +134,13 @@ class InitialState(OfTheInitialState):
         found = self.answer["x0"]
         return {} if found is None else dict.fromkeys(("x0", "x_0"), found)
 
+    def measured(self, at: Scalar, derivative: int = 0) -> Matrix | None:
+        """Return the output that was measured, or a derivative of it, at an instant; None where nothing was measured."""
+        table = table_of(self.answer["output"])
+        for _ in range(derivative):
+            table = tuple(tuple(entry.derivative() for entry in row) for row in table)
+        return matrix_at(table, at)
+
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time."""
@@ -567,6 +574,12 @@ class InitialStateOfSamples(InitialState):
             if not value.is_zero:
                 return cls(plant, method_name, {**answer, "row": w, "residual": residual, "refuted": (value,)})
         raise ArithmeticError("a residual that no row refutes")
+
+    def measured(self, at: Scalar, derivative: int = 0) -> Matrix | None:
+        """Return the sample of the output at an instant, None where there is none."""
+        y, number = self.answer["output"], at.fraction() if at.is_constant else None
+        is_sampled = not derivative and number is not None and number.denominator == 1 and 0 <= number < y.shape[1]
+        return _column(y, int(number)) if is_sampled and number is not None else None
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:

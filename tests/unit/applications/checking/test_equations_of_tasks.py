@@ -29,3 +29,39 @@ def test_a_formula_gives_no_value() -> None:
     assert (part.verdict, part.given) == ("right", "[2 3]")
     (part,) = (part for part in checked.report("K = R^-1 B' P").parts if part.weight)
     assert part.verdict == "missing"
+
+
+#: A double integrator: p12² = 1, p22² = 2 p12 + 2 and p11 = p12 p22 of the regulator; p12² = 4, p11² = 2 p12, p22 = p11 p12.
+TWO_RICCATI = """
+tasks = ["lqr", "kalman"]
+[plant]
+A = "[0 1; 0 0]"
+B = "[0; 1]"
+C = "[1 0]"
+[specification.lqr]
+Q = "[1 0; 0 2]"
+R = "1"
+[specification.kalman]
+W = "[0 0; 0 4]"
+V = "1"
+[marking]
+asked = ["lqr.K", "lqr.P", "kalman.L", "kalman.P"]
+"""
+
+
+@pytest.mark.parametrize("wrong", [False, True])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "K = [1 2]\nP = [2 1; 1 2]\nL = [2; 2]\nP = [2 2; 2 4]",
+        "(a) K = [1 2], P = [2 1; 1 2]\n(b) L = [2; 2], P = [2 2; 2 4]",
+        "K = [1 2]\nP_lqr = [2 1; 1 2]\nL = [2; 2]\nP_kalman = [2 2; 2 4]",
+        "K = [1 2]\nlqr_P = [2 1; 1 2]\nL = [2; 2]\nkalman_P = [2 2; 2 4]",
+        "kalman.P = [2 2; 2 4]\nlqr.P = [2 1; 1 2]\nK = [1 2]\nL = [2; 2]",
+    ],
+)
+def test_two_tasks_of_one_letter_are_told_apart(text: str, wrong: bool) -> None:  # noqa: FBT001 - of parametrize
+    report = Checked.of(TWO_RICCATI).report(text.replace("4]", "5]") if wrong else text)
+    verdicts = {part.part: part.verdict for part in report.parts}
+    assert verdicts == dict.fromkeys(verdicts, "right") | {"kalman.P": "wrong" if wrong else "right"}
+    assert not any(line.verdict in {"false", "unreadable"} for line in report.lines)

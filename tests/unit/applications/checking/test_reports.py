@@ -13,9 +13,10 @@ import pytest
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
 
 import symobs
+from symobs.applications.audit.differences import EntryDifference, WrongTerm, reasons
 from symobs.applications.checking import SHOW, Checked, CheckReport, check
-from symobs.applications.checking.derivations import without_solution
 from symobs.applications.checking.report import schema
+from symobs.formula.expression import parse_matrix
 from symobs.ground.errors import ProblemErrors, UsageError
 from symobs.problem import read
 from tests.kit import tabled
@@ -97,8 +98,23 @@ def test_a_line_on_signals_does_not_tell_the_gains(line: str, place: str) -> Non
 
 
 @tabled
-def test_of_a_wording_that_nobody_knows_nothing_is_told(said: str) -> None:
-    assert without_solution(said) == ""
+def test_hints_do_not_depend_on_the_words_of_reasons(
+    monkeypatch: pytest.MonkeyPatch, line: str, kept: str, gone: str
+) -> None:
+    monkeypatch.setattr(EntryDifference, "__str__", lambda entry: f"{entry.right} gehört an die Stelle {entry.place}")
+    monkeypatch.setattr(WrongTerm, "__str__", lambda term: f"{term.term} fehlt")
+    judged = CHECKED.report(line).lines[-1]
+    assert judged.verdict == "false"
+    assert kept in judged.reason
+    assert not re.search(rf"(?<!\d){gone}(?!\d)", judged.reason)
+
+
+@tabled
+def test_a_reason_tells_one_wrong_part_and_of_several_the_places(
+    printed: str, right: str, said: str, hint: str
+) -> None:
+    found = reasons(parse_matrix(printed), parse_matrix(right), "L")
+    assert (str(found), found.hint()) == (said, hint)
 
 
 def test_nothing_is_given_away_to_any_student_of_a_class() -> None:

@@ -35,6 +35,47 @@ def test_a_rounded_gain_is_right_to_its_digits(name: str, digits: int, answer: s
     assert part.verdict == verdict
 
 
+#: Routh: 2 (5 − k²) > 4, so that |k| < √3 = 1.7320508…; 2 (5 − k³ + k) > 4, so that k < 1.6716998…, the root of k³ − k − 3;
+#: 4 k > 1; s² − s − 1 has the roots (1 ± √5)/2 = 1.6180339…, −0.6180339…; those of s³ − s − 3 are 1.6716998… and
+#: −0.8358499… ± 1.0468693… i.
+WITH_ENDS = {
+    "square": 'task = "stability_region"\n[specification]\npolynomial = "s^3 + 2 s^2 + (5 - k^2) s + 4"\nparameters = "k"\n',
+    "cubic": 'task = "stability_region"\n[specification]\npolynomial = "s^3 + 2 s^2 + (5 - k^3 + k) s + 4"\n'
+    'parameters = "k"\n',
+    "third": 'task = "stability_region"\n[specification]\npolynomial = "s^3 + 3 s^2 + k s + 1"\nparameters = "k"\n',
+    "golden": 'task = "transfer_function"\n[plant]\nA = "[0 1; 1 1]"\nB = "[0; 1]"\nC = "[1 0]"\n',
+    "roots": 'task = "characteristic_polynomial"\n[plant]\nA = "[0 1 0; 0 0 1; 3 1 0]"\n',
+}
+_ASKED = {"golden": "transfer_function.poles", "roots": "characteristic_polynomial.roots"}
+
+
+@cache
+def ending(name: str, marking: str) -> Checked:
+    asked = f'asked = ["{_ASKED[name]}"]\n' if name in _ASKED else ""
+    return Checked.of(f"{WITH_ENDS[name]}[marking]\n{asked}{marking}\n")
+
+
+@tabled
+def test_irrational_ends_and_poles_are_right_in_their_digits(
+    name: str, digits: int, answer: str, accepted: str, exactly: str
+) -> None:
+    told = f"\ndigits = {digits}" if digits else ""
+    part, *others = ending(name, f'decimals = "accept"{told}').report(answer).parts
+    assert (part.verdict, others) == (accepted, [])
+    (part,) = ending(name, "").report(answer).parts
+    assert (part.verdict, part.slip or "") == (
+        "right" if exactly == "right" else "wrong",
+        exactly if exactly != "right" else "",
+    )
+    assert ("rounded" in part.reason) is (exactly == "rounded")
+
+
+@tabled
+def test_lines_with_rounded_ends_and_poles(name: str, answer: str, verdicts: list[str]) -> None:
+    found = [ending(name, marking).report(answer).lines for marking in ('decimals = "accept"', "")]
+    assert [line.verdict for lines in found for line in lines] == verdicts
+
+
 def digits_by_newton(places: int) -> list[str]:
     """The gain of the third problem from Kleinman's iteration, in mpmath: Lyapunov's equations of the loop in turn."""
     mp.dps = places + 20

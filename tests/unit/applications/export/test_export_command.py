@@ -71,6 +71,30 @@ def test_each_variant_is_exported_and_the_same_again(platform: str, tmp_path: Pa
             assert len(names) == 3
 
 
+@pytest.mark.parametrize(
+    "sources", [["."], ["variants"], ["manifest.json"], ["variants/v001.toml", "variants/v003.toml"]]
+)
+def test_variants_are_one_question_however_they_are_named(
+    sources: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for place in (variants(tmp_path, 3) / "variants").iterdir():  # as `symobs variants` names them
+        place.write_text(place.read_text().replace("Thirty", f"Thirty, variant {place.stem[-1]}"))
+    monkeypatch.chdir(tmp_path)
+    (each,) = exercises(sources)
+    assert len(each.variants) == (2 if len(sources) == 2 else 3)
+    assert each.name.startswith("thirty_")
+    assert "variant" not in each.name
+    assert "<text>$course$/symobs/Thirty</text>" in str(export("moodle", [each])[""])
+
+
+def test_variants_of_two_problems_are_two_questions(tmp_path: Path) -> None:
+    for name in ("one", "other"):
+        (tmp_path / name).mkdir()
+        variants(tmp_path / name, 2)
+    found = exercises([str(tmp_path / "one"), str(tmp_path / "other")])
+    assert [len(each.variants) for each in found] == [2, 2]
+
+
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_the_command_writes_complete_files(platform: str, tmp_path: Path) -> None:
     target = tmp_path / "out"

@@ -264,6 +264,27 @@ def test_tables_of_items_have_bodies() -> None:
         assert all(child.tag in {"caption", "tbody"} for table in tables for child in table)
 
 
+#: The attributes that MathML 3 gives to the elements of formulas, and all of them a class.
+_OF_MATHML_3 = {
+    "math": {"display"},
+    "mi": {"mathvariant"},
+    "mo": {"form", "separator", "stretchy"},
+    "mover": {"accent"},
+    "mspace": {"width", "height", "depth"},
+    "mstyle": {"displaystyle", "scriptlevel"},
+    "mtable": {"displaystyle"},
+}
+
+
+@pytest.mark.parametrize("name", ["deadbeat_observer", "time_varying_rotation", "unknown_input_not_decoupled"])
+def test_formulas_of_items_have_the_attributes_of_mathml_3(name: str) -> None:
+    for platform in ("qti", "qti21"):
+        item = item_of(held(name), platform)
+        parts = [(e.tag.partition("}")[2], {*e.attrib} - {"class"}) for e in item.iter() if "MathML" in e.tag]
+        assert all(attributes <= _OF_MATHML_3.get(tag, set()) for tag, attributes in parts)
+        assert {"displaystyle", "scriptlevel"} & {a for tag, attributes in parts if tag == "mstyle" for a in attributes}
+
+
 def test_a_notebook_is_one_of_format_4_5_and_says_the_same_every_time() -> None:
     each = held("servo_observer")
     found = notebook_of(each)

@@ -12,11 +12,14 @@ from xml.etree.ElementTree import Element, fromstring
 
 import pytest
 
-from symobs.applications.export import export
+from symobs.applications.export import exercises, export
+from symobs.ground.errors import ProblemErrors
 from tests.kit import tabled
 from tests.support.tools.exported import checked, held, random_answer
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from symobs.applications.export import ExerciseSet
 
 pytestmark = pytest.mark.skipif(shutil.which("maxima") is None, reason="maxima is not installed")
@@ -101,3 +104,45 @@ def test_the_trees_give_the_credits_of_check() -> None:
 @tabled
 def test_the_trees_give_the_credits_of_check_in_more_examples(name: str) -> None:
     agree(name, 25)
+
+
+#: A double integrator with Q = I, R = 1: p12 = 1, p22² = 3; a plant of first order: p² = 2p + 1, p = 1 + √2; the double
+#: integrator with Q = diag(q, 0): K = [√q  √(2√q)], where q = 2.
+ROOTS = {
+    "plain": ('A = "[0 1; 0 0]"\nB = "[0; 1]"', 'Q = "[1 0; 0 1]"'),
+    "sum": ('A = "1"\nB = "1"', 'Q = "1"'),
+    "nested": ('A = "[0 1; 0 0]"\nB = "[0; 1]"', 'Q = "[2 0; 0 0]"'),
+}
+
+
+@tabled
+def test_square_roots_are_compared_in_every_form(name: str, answer: str, note: str, tmp_path: Path) -> None:
+    plant, weight = ROOTS[name]
+    problem = tmp_path / "p.toml"
+    problem.write_text(
+        f'task = "lqr"\n[plant]\n{plant}\n[specification]\n{weight}\nR = "1"\n[marking]\nasked = ["lqr.K"]\n'
+    )
+    (each,) = exercises([str(problem)])
+    question = question_of(each)
+    ((verdict,),) = run(question, [{"ans1": answer}])
+    (tree,) = question.findall("prt")
+    assert walked(tree, verdict)[1] == f"prt1-{note}"
+    assert "sqrt(2)" in text_of(question, "questiontext/text")
+    with pytest.raises(ProblemErrors, match="these are roots"):
+        export("prairielearn", [each])
+
+
+#: (s + 1)(s² + 2s + 2), s² − s − 1 and (s + 1)².
+POLYNOMIALS = {"complex": "[0 1 0; 0 0 1; -2 -4 -3]", "golden": "[0 1; 1 1]", "twice": "[0 1; -1 -2]"}
+
+
+@tabled
+def test_poles_are_compared_as_sets_and_lists(name: str, answer: str, note: str, tmp_path: Path) -> None:
+    problem = tmp_path / "p.toml"
+    plant = f'[plant]\nA = "{POLYNOMIALS[name]}"\n[marking]\nasked = ["characteristic_polynomial.roots"]\n'
+    problem.write_text(f'task = "characteristic_polynomial"\n{plant}')
+    question = question_of(exercises([str(problem)])[0])
+    ((verdict,),) = run(question, [{"ans1": answer}])
+    assert walked(question.findall("prt")[0], verdict)[1] == f"prt1-{note}"
+    ((verdict,),) = run(question, [{"ans1": "ta1"}])  # the right value that the question shows
+    assert verdict == 0

@@ -69,6 +69,14 @@ def test_all_gains_of_compensators_are_whole(shape: dict[str, Any], count: int) 
         assert all(entry.denominator == 1 for row in (*K, *L) for entry in row)
 
 
+@pytest.mark.parametrize("kind", ["compensator", "second_order"])
+def test_observers_are_faster_than_the_control_whose_poles_vary(kind: str) -> None:
+    asked = [each.specification for each in made(kind, 40)]
+    halves = [[[real for real, _ in half[f"{name}_poles"].pairs] for name in ("control", "observer")] for half in asked]
+    assert all(max(observer) < min(control) for control, observer in halves)
+    assert len({tuple(control) for control, _ in halves}) >= 8  # of 10 each: three or two of five numbers
+
+
 @tabled
 def test_parts_are_hidden_where_the_sizes_say(sizes: list[int]) -> None:
     kept = 0

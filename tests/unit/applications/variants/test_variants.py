@@ -131,6 +131,28 @@ when = ["a < b", "a b = -3/2"]
     assert cheap(read_table(other), candidate(read_table(other), 0, 0)).reason == "when: a > b"
 
 
+@tabled
+def test_an_observer_that_is_no_faster_than_the_control_is_left_out(
+    control: str, observer: str, dt: str, reason: str
+) -> None:
+    text = f"""
+task = "compensator"
+[plant]
+A = "[0 1; 0 a]"
+B = "[0; 1]"
+C = "[1 0]"
+{dt}
+[specification]
+control_poles  = "{control}"
+observer_poles = "{observer}"
+[variants.parameters]
+a = {{ set = ["-1"] }}
+p = {{ poles = 2, from = [-3, -3] }}
+"""
+    text = text if "p" in f"{control}{observer}" else text.replace("p = {", "# ")
+    assert (cheap(read_table(text), candidate(read_table(text), 0, 0)).reason or "") == reason
+
+
 BAD = """
 task = "observer"
 [plant]

@@ -213,6 +213,11 @@ class TestFactors:
         assert sympy.cancel(factored_to_sympy(form, {}) - scalar_to_sympy(value)) == 0
         assert pickle.loads(pickle.dumps(form)) == form  # noqa: S301 - our own bytes
 
+    def test_factors_that_are_not_monic_are_whole(self) -> None:
+        form = factored((scalar("3/2") * s + 1) / (s + scalar("1/2")) ** 2, "s", monic=False)
+        assert set(form.factors) == {(3 * s + 2, 1), (2 * s + 1, -2)}
+        assert form.unit == Scalar.of(2)  # (3s + 2)/2 · 4/(2s + 1)²
+
     @pytest.mark.parametrize(("unit", "factors"), tables(Path(__file__))["awkward_forms"])
     def test_awkward_forms_are_read_back(self, unit: str, factors: list[tuple[str, int]]) -> None:
         form = Factored(scalar(unit), tuple((scalar(factor), power) for factor, power in factors))
