@@ -16,7 +16,7 @@ from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import roots_of_scalar
 from symobs.exact.core.generators import PI, function_named
 from symobs.formula.convention import STANDARD, Convention
-from symobs.formula.expression import declared_name, parse_polynomial, parse_scalar
+from symobs.formula.expression import declared_name, parse_polynomial, parse_scalar, typed_name
 from symobs.formula.expression.source import shown
 from symobs.formula.parser_limits import refuse_costly
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError, reason_of
@@ -161,7 +161,7 @@ def _with_constant(name: str, value: Any, symbols: Symbols) -> Symbols:
     Raises `InputError` where the name is a symbol too, and where the value is no number.
     """
     where, known = f"constants.{shown(name, 40)}", symbols.constants
-    name = declared_name(name, where)
+    name = declared_name(typed_name(name), where)
     if len(known) == _MAX_CONSTANTS:
         message = f"more than {_MAX_CONSTANTS} constants are declared"
         raise InputError(message, where="constants", repair="write the numbers themselves")

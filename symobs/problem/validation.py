@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs import SYNONYMS
 from symobs.formula.convention import STANDARD, Convention, convention_named
-from symobs.formula.expression import comma_between_digits, declared_name, parse_polynomial, without_comma
+from symobs.formula.expression import comma_between_digits, declared_name, parse_polynomial, typed_name, without_comma
 from symobs.formula.expression.names import NAME
 from symobs.formula.expression.source import shown
 from symobs.formula.phrases.languages import ENGLISH, language_named
@@ -354,7 +354,7 @@ def _symbols(table: Mapping[str, Any], errors: Errors) -> Symbols:
     kept: dict[str, Any] = {}
     for name in list(table)[:_MAX_SYMBOLS]:
         with errors:
-            typed = declared_name(name, f"symbols.{shown(name, 40)}")
+            typed = declared_name(typed_name(name), f"symbols.{shown(name, 40)}")
             kept[typed] = "real"
             entry, before = table[name], len(errors.found)
             for part in [{key: value} for key, value in entry.items()] if isinstance(entry, Mapping) else [entry]:

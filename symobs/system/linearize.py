@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Ideal, Matrix, Scalar
 from symobs.exact.core.generators import PI, NotWritten, identities, square_root, symbols_in, symbols_named
-from symobs.formula.expression import declared_name, parse_matrix, without_latex
+from symobs.formula.expression import declared_name, parse_matrix, typed_name, without_latex
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ShapeMismatch, together
 from symobs.system.reading import Nonlinear, has_decimals, read_time, read_values
@@ -204,13 +204,10 @@ def _names(given: object, where: str) -> tuple[str, ...]:
     listed = re.split(r"[,;\s]+", given.strip(" []")) if isinstance(given, str) else given
     if not isinstance(listed, Sequence):
         raise InputError("names are expected", where=f"plant.{where}", repair=f'write {where} = "x1, x2"')
-    names = tuple(declared_name(str(name), f"plant.{where}") for name in listed if str(name))
+    names = tuple(declared_name(typed_name(str(name)), f"plant.{where}") for name in listed if str(name))
     if not names and where == "states":
         raise InputError("no state is named", where="plant.states", repair='write states = "theta, omega"')
     return names
-
-
-_ONE_COLUMN = re.compile(r"\s*\[([^][,]*)\]\s*")
 
 
 def _column(value: object, symbols: Symbols, where: str) -> Matrix | None:
@@ -220,17 +217,26 @@ def _column(value: object, symbols: Symbols, where: str) -> Matrix | None:
     if value is None:
         return None
     rows: Any = value.tolist() if hasattr(value, "tolist") else value
-    if isinstance(rows, str) and ";" in rows and (inside := _ONE_COLUMN.fullmatch(without_latex(rows))):
-        rows = inside[1].split(";")  # of a column each row is one expression, and blanks in it are products
     if not isinstance(rows, str):
         rows = [rows] if not isinstance(rows, (list, tuple)) else rows
         rows = [[_text(entry) for entry in (row if isinstance(row, (list, tuple)) else [row])] for row in rows]
-    read = parse_matrix(rows, symbols.names, where=where, functions=True)
+    try:
+        read = parse_matrix(rows, symbols.names, where=where, functions=True)
+    except ShapeMismatch:
+        if not isinstance(rows, str) or "," in rows:
+            raise
+        read = _by_rows(rows, symbols, where)
     read = read.T if read.shape[0] == 1 else read
     if read.shape[1] != 1:
         message = f"a column is expected, but a matrix of {read.shape[0]}×{read.shape[1]} came"
         raise ShapeMismatch(message, where=where, repair="set its components apart by semicolons")
     return read
+
+
+def _by_rows(text: str, symbols: Symbols, where: str) -> Matrix:
+    """Return a column whose rows are expressions with blanks for products: [x2; -a sin x1 - b x2]."""
+    rows = [[row] for row in without_latex(text).strip().strip("[]").split(";")]
+    return parse_matrix(rows, symbols.names, where=where, functions=True)
 
 
 def _text(entry: object) -> object:

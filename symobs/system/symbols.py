@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
-from symobs.formula.expression import declared_name
+from symobs.formula.expression import declared_name, typed_name
 from symobs.formula.expression.names import NAME
 from symobs.formula.expression.source import shown
 from symobs.formula.notation import GREEK, symbol_latex
@@ -55,7 +55,7 @@ class Symbols:
         latex: dict[str, str] = {}
         objects: dict[str, Any] = {}
         for key, entry in declared.items():
-            name = key if isinstance(key, str) else _name_of(key)
+            name = typed_name(key) if isinstance(key, str) else _name_of(key)
             place = f"{where}.{shown(name, 40)}"
             name = declared_name(name, place)
             if name in signs:
@@ -92,7 +92,9 @@ class Symbols:
         listed = re.split(r"[,;\s]+", names.strip(" []")) if isinstance(names, str) else names
         if not self.closed or not isinstance(listed, (list, tuple)):
             return self
-        fresh = {str(name): "real" for name in listed if str(name) and str(name) not in self.signs}
+        fresh = {
+            typed_name(str(name)): "real" for name in listed if str(name) and typed_name(str(name)) not in self.signs
+        }
         signs = {**self.signs, **{declared_name(name, where): sign for name, sign in fresh.items()}}
         return replace(self, signs=signs, named=self.named.union(fresh))
 

@@ -229,7 +229,7 @@ def test_a_plant_that_cannot_be_read_does_not_hide_what_is_missing() -> None:
             a = { sign = "postive", tex = "a" }
             [plant]
             A = "[1 2; 3 4]"
-            B = "[1 2]"
+            B = "[1 2 3]"
             C = "[1 2 3]"
             [specification]
             control_poles = "-1, -2"

@@ -39,10 +39,14 @@ UNIT_FIRST = re.compile(
 _MOST_COMPARED = 1_000
 
 
+def typed_name(name: str) -> str:
+    """Return how a printed name is typed: ω_0 is omega_0, and a_{11} is a_11; any other one as it is."""
+    is_printed = not NAME.fullmatch(name) and _PRINTED.fullmatch(name)
+    return spellings(name)[0 if "_" in name else -1] if is_printed else name
+
+
 def declared_name(name: object, where: str = "") -> str:
-    """Return a name, or how a printed one is typed, if it is admissible for a symbol; raises ExpressionError otherwise."""
-    if isinstance(name, str) and not NAME.fullmatch(name) and _PRINTED.fullmatch(name):
-        name = spellings(name)[-1 if "_" not in name else 0]
+    """Return `name` if it is admissible for a symbol; raises ExpressionError otherwise."""
     if not isinstance(name, str) or not NAME.fullmatch(name):
         came = f'"{shown(name)}"' if isinstance(name, str) else f"a {type(name).__name__}"
         repair = "begin with a letter A-Z or a-z and go on with letters, digits and _"

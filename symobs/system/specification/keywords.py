@@ -411,11 +411,15 @@ def from_list(value: Any, *, column: bool) -> Any:
     return as_rows("B" if column else "C", value)
 
 
+#: What a row could take for another one: K is a row where L is a column.
+_GAINS = {"K", "L", "M", "H"}
+
+
 def read_gain(value: object, plant: StateSpace, name: str, shape: tuple[int, int]) -> Matrix:
     """Return a given gain, a flat list where it is a row or a column; raises ShapeMismatch for another shape."""
     where = f"specification.{name}"
     gain = read_matrix(from_list(value, column=shape[1] == 1), plant.symbols.seen(value), where, functions=True)
-    if shape[1] == 1 and gain.shape == (1, shape[0]):  # a column that is written as a row, or 0 for all of it
+    if shape[1] == 1 and gain.shape == (1, shape[0]) and name not in _GAINS:  # a column that is written as a row, or 0
         gain = gain.T
     elif shape[1] == 1 and gain == Matrix.zeros(1, 1):
         gain = Matrix.zeros(*shape)

@@ -60,4 +60,4 @@ def test_powers_of_e_are_read_in_answers_and_told_how_they_are_written_in_proble
     assert {line.verdict for line in report.lines} == {"true"}
     said = "write exp(-a*t) for e^(-a*t)"
     with pytest.raises(ProblemErrors, match=re.escape(said)):
-        Checked.of('task = "response"\n[plant]\nA = "[-1]"\nB = "[1]"\n[specification]\ninput = "e^(-t)"\n')
+        Checked.of('task = "response"\n[plant]\nA = "[-1]"\nB = "[1]"\n[specification]\ninput = "e^-t"\n')
