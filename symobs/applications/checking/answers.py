@@ -337,7 +337,11 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
         raise ProblemErrors((InputError(message, where=where, repair="hand in the answer alone"),))
     text = typed(given)
     if re.match(r"\s*\{\s*[\"}]", text) or _TABLES.search(text):
-        return _of_tables(parse(text, where))
+        data = parse(text, where)
+        if text.lstrip().startswith("{") and not {"answer", "step"} & data.keys():  # values by name alone
+            own = {key: data.pop(key) for key in ("student", "convention", "symbols", "let") if key in data}
+            data = {**own, "answer": data}
+        return _of_tables(data)
     found = without_latex(without_drawings(without_marks(text)))
     own, lines = text.splitlines(), found.splitlines()
     return _of_lines(found, where, own if len(own) == len(lines) else lines)
