@@ -339,8 +339,8 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
     if re.match(r"\s*\{\s*[\"}]", text) or _TABLES.search(text):
         data = parse(text, where)
         if text.lstrip().startswith("{") and not {"answer", "step"} & data.keys():  # values by name alone
-            own = {key: data.pop(key) for key in ("student", "convention", "symbols", "let") if key in data}
-            data = {**own, "answer": data}
+            about = {key: value for key, value in data.items() if key in {"student", "convention", "symbols", "let"}}
+            data = {**about, "answer": {key: value for key, value in data.items() if key not in about}}
         return _of_tables(data)
     found = without_latex(without_drawings(without_marks(text)))
     own, lines = text.splitlines(), found.splitlines()
