@@ -336,7 +336,11 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
         raise ProblemErrors((InputError(message, where=where, repair="hand in the answer alone"),))
     text = typed(given)
     if re.match(r"\s*\{\s*[\"}]", text) or _TABLES.search(text):
-        return _of_tables(parse(text, where))
+        data = parse(text, where)
+        if text.lstrip().startswith("{") and not {"answer", "step"} & data.keys():  # values by name alone
+            about = {key: value for key, value in data.items() if key in {"student", "convention", "symbols", "let"}}
+            data = {**about, "answer": {key: value for key, value in data.items() if key not in about}}
+        return _of_tables(data)
     found = without_latex(without_drawings(without_marks(text)))
     own, lines = text.splitlines(), found.splitlines()
     return _of_lines(found, where, own if len(own) == len(lines) else lines)

@@ -176,3 +176,14 @@ def test_milestones_are_points_of_the_total(folder: Path) -> None:
 def test_what_is_no_text_is_refused(raw: bytes) -> None:
     with pytest.raises(InputError, match="no text"):
         decoded(raw)
+
+
+def test_json_holds_values_by_name_with_a_student_or_without(folder: Path) -> None:
+    (folder / "named").mkdir()
+    for name, text in (("s1.json", '{"L": "[19; 81]"}'), ("s2.json", '{"student": "Ada", "L": "[19; 81]"}')):
+        (folder / "named" / name).write_text(text, "utf-8")
+    found = inside("check", "problem.toml", "--submissions", "named", "-o", "OUT", folder=folder)
+    reports = [json.loads(line) for line in (folder / "OUT" / "results.jsonl").read_text("utf-8").splitlines()]
+    assert found.code == 0, found.err
+    parts = [{part["part"]: part["verdict"] for part in report["parts"]} for report in reports]
+    assert [each["compensator.L"] for each in parts] == ["right", "right"]
