@@ -112,6 +112,16 @@ class Opened:
             self.page.mouse.move(*(a + (b - a) * k / steps for a, b in zip(begin, end, strict=True)))
         self.page.mouse.up()
 
+    def swipe(self, begin: tuple[float, float], by: tuple[float, float], steps: int = 8) -> None:
+        """Move one finger over the screen, as the system of a telephone tells it to the browser."""
+        finger = self.context.new_cdp_session(self.page)
+        for k in range(steps + 1):
+            x, y = (a + b * k / steps for a, b in zip(begin, by, strict=True))
+            kind = "touchMove" if k else "touchStart"
+            finger.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x, "y": y}]})
+        finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+        finger.detach()
+
     def poles(self, key: str) -> str:
         found: str = self.page.input_value(f'[data-set="{key}"]')
         return found
@@ -350,6 +360,109 @@ def test_a_derivation_that_does_not_come_is_said(opened: Callable[..., Opened]) 
     live.complaints.clear()
 
 
+@pytest.mark.parametrize(
+    ("state", "hit", "fields"),
+    [(PAIR, '[data-handle="observer_poles.0"] .hit', ["observer_poles"]), (REGION, ".pick .hit", ["at.h1", "at.h2"])],
+    ids=["pole", "point"],
+)
+def test_a_finger_moves_what_it_touches_and_scrolls_beside_it(
+    opened: Callable[..., Opened], state: str, hit: str, fields: list[str]
+) -> None:
+    live = opened(state, has_touch=True, is_mobile=True)
+    live.page.set_viewport_size({"width": 360, "height": 700})
+
+    def place() -> tuple[float, float]:
+        live.page.evaluate("document.activeElement?.blur()")
+        box = live.page.locator(hit).first.bounding_box()
+        return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def told() -> list[str]:
+        return [live.page.locator(_FIELD.format(field)).input_value() for field in fields]
+
+    live.page.locator(hit).first.scroll_into_view_if_needed()
+    live.at_rest()
+    scrolled = live.page.evaluate("scrollY")
+    for by in ((0, -30), (0, 25), (-30, 0), (25, 0)):
+        (x, y), before = place(), told()
+        live.swipe((x, y), by)
+        live.at_rest()
+        assert told() != before, by
+        assert live.page.evaluate("scrollY") == scrolled, by
+    (x, y), before = place(), told()
+    live.swipe((x - 90 if x > 180 else x + 90, y), (0, -80))
+    live.wait_for(f"scrollY > {scrolled}")
+    live.at_rest()
+    assert told() == before
+
+
+def test_what_is_typed_and_not_entered_pales_the_answer_until_escape(opened: Callable[..., Opened]) -> None:
+    live = opened(SERVO)
+    live.page.wait_for_selector(".page:not(.old) .html math")
+    stale = ".symobs-live.stale:has(.page.old)"
+    for place, text in (
+        ("control_poles", "-3, -4"),
+        ("plant.A[2,2]", "-5"),
+        ("goal.gain", "7"),
+        ("courses.start", "2, 2"),
+    ):
+        if place == "goal.gain":
+            live.page.click(".goals summary")
+        field = live.page.locator(_FIELD.format(place))
+        before, asked = field.input_value(), len(live.asked)
+        field.focus()
+        live.page.keyboard.press("Control+a")
+        live.page.keyboard.type(text)
+        live.page.wait_for_selector(stale)
+        live.page.keyboard.press("Escape")
+        live.page.wait_for_selector(".symobs-live:not(.stale):has(.page:not(.old))")
+        assert field.input_value() == before
+        assert len(live.asked) == asked
+        live.page.keyboard.press("Control+a")
+        live.page.keyboard.type(text)
+        live.page.wait_for_selector(stale)
+        live.page.keyboard.press("Enter")
+        live.page.wait_for_selector(".symobs-live:not(.stale)")
+        assert len(live.asked) > asked
+        live.at_rest()
+    assert problem_of(live.page.url)[0]["plant"]["A"] == "[0 1; 0 -5]"
+
+
+def test_an_empty_field_says_nothing(opened: Callable[..., Opened]) -> None:
+    live = opened("v=1&task=feedforward&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&control=-2, -2&observer=-3, -4")
+    live.put("", "observer_poles")
+    assert live.latex("F") == "F=4"  # of u = −K x + F v, without an observer
+    assert live.page.locator(".wrong:not(:empty)").count() == 0
+    assert "observer" not in unquote(live.page.url)
+
+
+def test_where_y_ends_stands_beside_the_reference_and_a_button_brings_it_there(opened: Callable[..., Opened]) -> None:
+    state = "v=1&task=compensator&A=[0 1; -2 -1]&B=[0; 1]&C=[1 0]&control=-2, -2&observer=-10, -10&step=1"
+    for task in ("feedforward", "integral action"):
+        live = opened(state)
+        # K = (2, 3), L = (19, 79), K (BK + LC − A)⁻¹ L = 82/159, and y ends at 41/159 / (1 + 41/159)
+        assert "y ends at r = 1: (0.205) ✗" in live.page.inner_text("p.met")
+        assert live.page.text_content(".responses .legend small").startswith("ends at 0.205")
+        assert live.page.locator(".responses line.goal").count() == 1
+        live.page.get_by_role("button", name=f"by {task}").click()
+        live.page.wait_for_url(f"**task={task.replace(' ', '_')}**")
+        live.page.wait_for_selector('b.met[data-met="true"]')
+        live.at_rest()
+        assert "y ends at r = 1: (1) ✓" in live.page.inner_text("p.met")
+        assert live.page.get_by_role("button", name="by ").count() == 0
+
+
+def test_the_convention_of_an_example_is_said_at_the_cards_and_leaves_by_a_button(
+    opened: Callable[..., Opened],
+) -> None:
+    live = opened(f"{SERVO}&convention=plusK-plusMC")
+    assert live.latex("K") == r"K=\begin{bmatrix}-4&-3\end{bmatrix}"
+    live.page.get_by_role("button", name="convention plusK-plusMC").click()
+    live.wait_for("document.querySelector('.card[data-name=K] .display').dataset.latex.includes('}4&3')")
+    live.at_rest()
+    assert "convention" not in live.page.url
+    assert live.page.get_by_role("button", name="convention").count() == 0
+
+
 def test_pairs_form_and_part(opened: Callable[..., Opened]) -> None:
     live = opened(PAIR)
     x, y = live.middle("observer_poles.0")
@@ -558,8 +671,9 @@ def test_every_task_of_the_menu_begins_with_an_answer(opened: Callable[..., Open
         assert live.page.locator(".wrong:not(:empty)").count() == 0, task
 
 
-def act(page: Any, draw: random.Random, examples: list[str]) -> None:
+def act(live: Opened, draw: random.Random, examples: list[str]) -> None:
     """Do one thing that a user might do."""
+    page = live.page
 
     def type_into(place: str, texts: list[str]) -> None:
         if (found := page.locator(f":is({place}):not([inert] *):visible")).count():
@@ -567,7 +681,7 @@ def act(page: Any, draw: random.Random, examples: list[str]) -> None:
             field.fill(draw.choice(texts))
             field.press("Tab")
 
-    match draw.randrange(12):
+    match draw.randrange(15):
         case 0:
             name = draw.choice(examples)
             for _ in range(draw.randint(1, 2)):  # chosen a second time, it begins anew
@@ -607,14 +721,39 @@ def act(page: Any, draw: random.Random, examples: list[str]) -> None:
                 if draw.random() < 0.3:
                     page.keyboard.press("Escape")
                 page.mouse.up()
+        case 12 | 13 | 14:
+            act_in_one_place(live, draw)
         case _:
             page.locator(".bar > button.quiet").nth(draw.randrange(3)).click(force=True)
+
+
+def act_in_one_place(live: Opened, draw: random.Random) -> None:
+    """Type into a field and do not enter it, press a key on a handle, or move it by a finger."""
+    page = live.page
+
+    def any_of(place: str) -> Any:
+        found = page.locator(f":is({place}):not([inert] *):visible")
+        return found.nth(draw.randrange(found.count())) if found.count() else None
+
+    if (field := any_of("input:is([data-where], [data-set]):not([type])")) is not None and draw.random() < 0.5:
+        field.focus()
+        page.keyboard.press("Control+a")
+        page.keyboard.type(draw.choice(["-3, -4", "2", "-1/2", "", "(", "sqrt(2)"]))
+        if draw.random() < 0.4:
+            page.keyboard.press("Escape")
+    elif (handle := any_of(".handle")) is not None and draw.random() < 0.5:
+        handle.focus()
+        page.keyboard.press(draw.choice(["ArrowLeft", "ArrowRight", "Shift+ArrowUp", "ArrowDown", "Escape"]))
+    elif (glyph := any_of(".handle .glyph")) is not None and (box := glyph.bounding_box()) is not None:
+        middle = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        live.swipe(middle, (draw.randint(-60, 60), draw.randint(-60, 60)), steps=4)
 
 
 #: No question is under way, and what is pale says why; on a busy machine a question is asked before it is seen to be.
 SETTLED = """!document.querySelector('.symobs-live[aria-busy=true]') && (
     !document.querySelector('.symobs-live.stale')
     || document.querySelector('.wrong:not(:empty)')
+    || document.querySelector('input.typed')
     || [...document.querySelectorAll('.message')].some(message => message.checkVisibility()))"""
 
 
@@ -633,7 +772,7 @@ def walked(live: Opened, seed: int, steps: int, switch: Callable[[bool], None]) 
         if draw.random() < (0.5 if dead else 0.06):
             dead = not dead
             switch(dead)
-        act(page, draw, picked)
+        act(live, draw, picked)
         page.wait_for_timeout(200)  # longer than the page waits before it says that it is busy
         live.wait_for(SETTLED)
         where = f"step {step} of {seed}: {page.url}"
@@ -641,6 +780,7 @@ def walked(live: Opened, seed: int, steps: int, switch: Callable[[bool], None]) 
         if page.locator(".symobs-live.stale").count():
             pale += 1
             continue
+        assert page.locator("input.typed").count() == 0, where
         problem, at = problem_of(page.url)
         if (dt := problem["plant"].get("dt")) is not None:
             problem["plant"]["dt"] = {"true": True}.get(dt, int(dt) if dt.isdigit() else dt)
@@ -673,7 +813,7 @@ def walked(live: Opened, seed: int, steps: int, switch: Callable[[bool], None]) 
 
 
 def test_what_is_in_full_ink_answers_what_is_on_the_screen(opened: Callable[..., Opened]) -> None:
-    live = opened(SERVO)
+    live = opened(SERVO, has_touch=True)
     full, pale = walked(live, 20, 40, live.context.set_offline)
     assert full > 10
     assert pale > 3

@@ -440,7 +440,7 @@ def _answer(asked: Request) -> dict[str, Any]:
                 *(pole for _, matrix in _loops_of_given_gains(there) for pole in _eigenvalues(matrix)),
             ],
             asked.goal,
-            responses["lines"] if responses and responses["step"] else (),
+            responses,
         ),
     }
     if asked.loop != "none":

@@ -180,18 +180,19 @@ def _measured(plant: StateSpace) -> dict[str, Any]:
 def _region(plant: StateSpace) -> dict[str, Any]:
     """Return two parameters: letters of the plant, or else two entries of a stabilising gain."""
     m, order = plant.matrices, plant.order
-    if m.A.names or not (m.has_input or m.has_output):
-        return {"parameters": ", ".join(sorted(m.A.names)[:2])} if m.A.names else {}
+    letters = sorted(m.A.names & plant.symbols.signs.keys())  # a root is a number
+    if letters or not (m.has_input or m.has_output):
+        return {"parameters": ", ".join(letters[:2])} if letters else {}
     name, task = ("K", "state_feedback") if m.has_input else ("L", "observer")
     found = tasks()[task]
     gain = found.function(plant, poles=_poles("poles", plant, found, {})).fields.get(name)
     table = (
         [["0"] * order] if gain is None else [[str(x) for x in row] for row in (gain if name == "K" else gain.T).rows]
     )
-    letters = [f"{name.lower()}{place}" for place in range(1, min(order, 2) + 1)]
-    table[0][: len(letters)] = letters
+    entries = [f"{name.lower()}{place}" for place in range(1, min(order, 2) + 1)]
+    table[0][: len(entries)] = entries
     rows = table if name == "K" else [list(row) for row in zip(*table, strict=True)]
-    return {name: f"[{'; '.join(map(' '.join, rows))}]", "parameters": ", ".join(letters)}
+    return {name: f"[{'; '.join(map(' '.join, rows))}]", "parameters": ", ".join(entries)}
 
 
 #: Tasks that need more than a plant and poles, and what they begin with.

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 from symobs.applications.live.frequency_response import phase_margin
 from symobs.applications.live.request import FieldError
 from symobs.exact import Matrix, Scalar
-from symobs.exact.algebraic.enclosure import sign_of_number
+from symobs.exact.algebraic.enclosure import is_number, sign_of_number
 from symobs.exact.algebraic.loop_distances import INFINITE
+from symobs.exact.time_functions.matrix_exponential import fraction_near
 from symobs.system import Symbols, read_scalar
 
 if TYPE_CHECKING:
@@ -29,12 +30,14 @@ def goals_of(
     result: Result,
     poles: Iterable[tuple[Fraction, Fraction]],
     asked: Mapping[str, str],
-    after_step: Sequence[Mapping[str, Any]] = (),
+    responses: Mapping[str, Any] | None = None,
 ) -> dict[str, dict[str, Any]]:
     """Return for each goal whether it is met (None: undecided), the value there, and the line in the plane.
 
-    Settling and overshoot are those of the outputs after a step of the reference, where these are shown.
+    Settling and overshoot are those of the outputs after a step of the reference, where these are shown; that they end at
+    the reference is a goal of its own then.
     """
+    after_step = responses["lines"] if responses and responses["step"] else ()
     placed, found = list(poles), dict[str, dict[str, Any]]()
     limits = {name: _positive(text, name) for name, text in asked.items()}
     if not result.plant.is_discrete and placed:
@@ -57,11 +60,15 @@ def goals_of(
         ]
         if entries:
             met = False if "negative" in signs else None if "real" in signs else True
-            found["gain"] = {"met": met}
+            numbers = [abs(fraction_near(entry)) for entry in entries if is_number(entry)]
+            found["gain"] = {"met": met, "value": _digits(float(max(numbers))) if len(numbers) == len(entries) else ""}
     if (limit := limits.get("phase")) is not None and (margin := phase_margin(result)) is not None:
         value = inf if margin == INFINITE else float(margin)
         found["phase"] = {"met": value == inf or _within(float(limit), value), "value": _digits(value)}
-    return {name: found.get(name, {"met": None, "value": ""}) for name in limits}
+    told = {name: found.get(name, {"met": None, "value": ""}) for name in limits}
+    if responses and responses["step"]:
+        told["reference"] = {"met": responses["follows"], "value": "; ".join(responses["ends"])}
+    return told
 
 
 def _after_step(name: str, lines: Sequence[Mapping[str, Any]], limit: float) -> dict[str, Any]:

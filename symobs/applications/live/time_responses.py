@@ -79,10 +79,16 @@ class Signals:
             if all(map(is_number, row))  # a gain may have parameters where the loop has none
         ]
         self.finals: list[int | None] = [0 if driven is None else None] * len(self.rows)
+        self.ends: list[str] = []
+        self.follows = False
         if driven is not None and _converges(loop, discrete=discrete):
             rest = (Matrix.identity(order) - loop if discrete else -loop).solve(driven)
             state = [*map(fraction_near, rest.entries), Fraction(1)]
             self.finals = [round(sum(map(mul, row, state), Fraction(0)) * _FINE) for _, _, row, _ in self.rows]
+            (outputs,) = (table for name, table, _ in drawn if name == "y")
+            ends = (outputs @ Matrix.block([[rest], [Matrix.identity(1)]])).entries
+            self.ends = [_digits(fraction_near(end), 3) for end in ends]
+            self.follows = all((end - 1).is_zero for end in ends)
 
 
 def _converges(loop: Matrix, *, discrete: bool) -> bool:
@@ -119,14 +125,16 @@ def _drawn(signals: Signals, end: Fraction, asked: Responses, *, discrete: bool)
     else:
         every, (seen, behind) = 2, _enclosed(signals, end, asked.count)
     told = list(zip(signals.rows, seen, behind, signals.finals, strict=True))
-    head = {"end": str(end), "discrete": discrete, "step": asked.step}
+    head: dict[str, Any] = {"end": str(end), "discrete": discrete, "step": asked.step}
+    if asked.step:
+        head |= {"ends": signals.ends, "follows": signals.follows}
     effort = [each for each in told if each[0][0] == "u"]
-    found = head | _picture([each for each in told if each[0][0] != "u"], end, every)
+    found = head | _picture([each for each in told if each[0][0] != "u"], end, every, reference=asked.step)
     return found | ({"effort": head | _picture(effort, end, every)} if effort else {})
 
 
-def _picture(told: list[Any], end: Fraction, every: int) -> dict[str, Any]:
-    """Return lines with a window around them."""
+def _picture(told: list[Any], end: Fraction, every: int, *, reference: bool = False) -> dict[str, Any]:
+    """Return lines with a window around them, and around a reference of 1."""
     heights = [line[::every] for _, line, _, _ in told]
     peak = max(abs(height) for line in heights for height in line)
     if peak > _LARGEST * _FINE:
@@ -141,6 +149,7 @@ def _picture(told: list[Any], end: Fraction, every: int) -> dict[str, Any]:
         for ((name, place, _, dashed), fine, after, final), line in zip(told, rounded, strict=True)
     ]
     low, high = min(map(min, rounded)), max(map(max, rounded))
+    high = max(high, parts) if reference else high
     room = Fraction(max(high - low, 1), 20)
     window = [["0", str(end)], [_decimal((low - room) / parts), _decimal((high + room) / parts)]]
     return {"parts": parts, "window": window, "lines": lines}

@@ -181,9 +181,10 @@ export function mount(element, transport, options = {}) {
   const begun = (link) => decoded(/(^|[#&])task=/.test(link) ? link : `${DEMO}&${link.replace(/^#/, "")}`);
   let s = begun(options.state ?? "");
   let view = null, viewed = "", answer = null, sets = {}, held = null, frame = null, start = null;
-  let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, refused = false, gone = false, quiet = false, before = "";
+  let waiting = null, running = false, number = 0, drawn = 0, restTimer = 0, busyTimer = 0, said = 0, renewing = false, gone = false, quiet = false, before = "";
   let aborted = new AbortController(), language = null, notice = "", point = null, pinned = [], turns = 0, turning = 0, isLetGo = false, fill = () => {}, release = () => {};
   const unfolded = new Set();
+  const unentered = new Map();  // fields whose text belongs to no question: it is being typed, or it was refused
   let traced = null;  // the answer whose line is shown as soon as there is a derivation
   let origin = encoded(s), steps = [origin], reached = 0;
   const el = {}, focused = () => root.getRootNode().activeElement, find = (name, of = "where") => root.querySelector(`[data-${of}="${CSS.escape(name)}"]`);
@@ -245,7 +246,8 @@ export function mount(element, transport, options = {}) {
     el.drive = h("select", { "aria-label": w("drive"), onchange: () => { s.step = el.drive.value; settle(); } }, [["", "drive_state"], ["1", "drive_step"]].map(([value, word]) => h("option", { value }, w(word))));
     el.responsesBar.append(el.drive);
     el.pin = h("button", { class: "quiet", onclick: pin }, w("pin"));
-    el.cardsBar.append(el.pin);
+    el.convention = h("button", { class: "quiet", "data-where": "convention", title: w("standard_convention"), onclick: () => { s.convention = ""; problemChanged(); el.pin.focus(); } });
+    el.cardsBar.append(el.convention, el.pin);
     drawPins();
     el.gains = h("span", {});
     el.planeBar.append(el.gains, h("label", {}, `${w("grid")} `, el.snap));
@@ -273,8 +275,9 @@ export function mount(element, transport, options = {}) {
 
   // -- asking: one question under way, the newest waits --
 
+  const filledIn = (fields) => Object.fromEntries(Object.entries(fields).filter(([, entry]) => entry !== ""));  // an empty one says nothing
   const problem = () => {
-    const told = { task: s.task, plant: { ...s.plant }, specification: { ...s.spec }, symbols: s.symbols };
+    const told = { task: s.task, plant: filledIn(s.plant), specification: filledIn(s.spec), symbols: s.symbols };
     if (/^\d+$/.test(s.plant.dt ?? "")) told.plant.dt = Number(s.plant.dt);
     if (s.plant.dt === "true") told.plant.dt = true;
     if (!Object.keys(told.plant).length) delete told.plant;
@@ -292,7 +295,7 @@ export function mount(element, transport, options = {}) {
   const questions = { answer: () => [problem(), free(), s.x0, s.xh0, isStep(), s.goal], region: () => [problem(), free()], point: () => [problem(), s.at], page: () => [problem(), free(), s.detail] };
   const answered = {};
   const question = (kind) => JSON.stringify(questions[kind]());
-  const isOld = (kind) => refused || answered[kind] !== question(kind);
+  const isOld = (kind) => unentered.size > 0 || answered[kind] !== question(kind);
   function fade() {
     root.classList.toggle("stale", isOld("answer"));
     el.map.classList.toggle("old", isOld("region"));
@@ -440,7 +443,6 @@ export function mount(element, transport, options = {}) {
   // -- changes --
 
   function commit(final) {
-    refused = false;
     fade();
     const link = encoded(s);
     if (link.length > LONGEST) say(w("too_long"));
@@ -540,11 +542,52 @@ export function mount(element, transport, options = {}) {
     const isParted = given.includes(";") && (input.dataset.set || where.startsWith("courses."));
     if (language.decimal_mark === "," && (isOne || isParted)) changed(input.value = points.replace(/\s*;\s*/g, ", "));
     else if (language.decimal_mark !== "," || points === given) changed(given);
-    else { refused = false; clearWrong(); refused = true; showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); fade(); }
+    else { clearWrong(); unentered.set(nameOfField(input), "refused"); input.classList.add("typed"); showErrors([{ where, message: w("comma"), repair: w("comma_repair") }]); fade(); }
+  }
+
+  const nameOfField = (input) => input.dataset.where ?? input.dataset.set;
+
+  /** Write into a field what is moved elsewhere, unless somebody types there. */
+  function write(input, entry) {
+    if (!input || (focused() === input && input.matches(".typed"))) return;
+    unentered.delete(nameOfField(input));
+    input.classList.remove("typed");
+    input.value = entry;
+  }
+
+  /** A field for text, which is entered by Enter or by leaving the field, and taken back by Escape. */
+  function textField(label, given, changed, of) {
+    let entered = given ?? "";
+    const name = Object.values(of)[0];
+    const note = () => {
+      if (input.value === entered) unentered.delete(name); else unentered.set(name, "typed");
+      input.classList.toggle("typed", unentered.has(name));
+      fade();
+    };
+    const enter = () => {
+      unentered.delete(name);
+      entered = input.value;
+      input.classList.remove("typed");
+      typed(input, changed);
+    };
+    const input = h("input", {
+      value: entered, "aria-label": label, ...of, spellcheck: "false", autocapitalize: "off", autocomplete: "off",
+      onfocus: () => { if (!unentered.has(name)) entered = input.value; }, oninput: note,
+      onblur: () => { if (!renewing && unentered.get(name) === "typed") enter(); },
+      onkeydown: (e) => {
+        if (e.key === "Enter") enter();
+        if (e.key !== "Escape" || !unentered.has(name)) return;
+        input.value = entered;
+        note();
+        clearWrong();
+        if (isOld("answer")) ask(); else rest(REST);
+      },
+    });
+    return input;
   }
 
   function field(where, label, given, changed, wide = true) {
-    const input = h("input", { value: given ?? "", "aria-label": label, "data-where": where, spellcheck: "false", autocapitalize: "off", autocomplete: "off", onchange: () => typed(input, changed), onkeydown: (e) => { if (e.key === "Enter") typed(input, changed); } });
+    const input = textField(label, given, changed, { "data-where": where });
     return wide ? labelled(label, input) : input;
   }
 
@@ -553,13 +596,19 @@ export function mount(element, transport, options = {}) {
   /** Do what builds fields anew; the focus stays where it is, and so does what is being typed. */
   function keepingFocus(renew) {
     const active = focused(), { where, set } = root.contains(active) ? active?.dataset ?? {} : {};
+    renewing = true;
     renew();
+    renewing = false;
     const again = where || set ? (where ? find(where) : find(set, "set")) : null;
+    for (const name of [...unentered.keys()]) if (!(find(name) ?? find(name, "set"))?.matches(".typed")) unentered.delete(name);
     if (!again || again === active) return;
-    const isTyped = active.type === "text";
-    if (isTyped && active.value !== active.defaultValue) again.value = active.value;
     again.focus({ preventScroll: true });
-    if (isTyped) again.setSelectionRange(active.selectionStart, active.selectionEnd);
+    if (active.type !== "text") return;
+    if (active.matches(".typed")) {
+      again.value = active.value;
+      again.dispatchEvent(new Event("input"));
+    }
+    again.setSelectionRange(active.selectionStart, active.selectionEnd);
   }
 
   /** Hold nothing any more: what is held belongs to fields and pictures that are built anew. */
@@ -604,6 +653,8 @@ export function mount(element, transport, options = {}) {
     el.snap.value = s.snap;
     el.detail.value = s.detail;
     el.pin.hidden = !view?.gains.length;
+    el.convention.hidden = ["", "standard"].includes(s.convention);
+    el.convention.textContent = `${w("convention", { name: s.convention })} ×`;
     el.drive.hidden = !view?.step;
     el.drive.value = isStep() ? "1" : "";
     buildSets();
@@ -650,7 +701,7 @@ export function mount(element, transport, options = {}) {
     const far = Math.abs(numberOf(given)), most = far > 10 ? 2 * Math.ceil(far) : 10;
     const low = /positive|nonnegative/.test(sign) ? 0 : -most, high = /negative|nonpositive/.test(sign) && sign !== "nonnegative" ? 0 : most;
     const show = (t) => { if (rational(t)) range.value = String(numberOf(t) * GRID); };
-    const set = (t, final) => { exact.value = put(t); show(t); isLetGo ||= final; commit(final); ask(); };
+    const set = (t, final) => { write(exact, put(t)); show(t); isLetGo ||= final; commit(final); ask(); };
     const range = h("input", { type: "range", min: low * GRID, max: high * GRID, "aria-label": `${name}, ${sign}`, "data-where": `move.${where}`, oninput: () => { held = "slider"; set(text(ratio(Number(range.value), GRID)), false); }, onchange: () => { held = null; isLetGo = true; settle(); } });
     show(given);
     const exact = field(where, w("value_of", { name }), given, (t) => set(t, true), false);
@@ -716,21 +767,22 @@ export function mount(element, transport, options = {}) {
   /** Say above the plane which goals are met. */
   function drawGoals() {
     for (const name of GOALS) find(`goal.${name}`)?.closest(".field").querySelector("span").replaceChildren(goalName(name));
-    el.met.replaceChildren(...GOALS.filter((name) => answer.goal?.[name]).map((name) => {
+    keepingFocus(() => el.met.replaceChildren(...[...GOALS, "reference"].filter((name) => answer.goal?.[name]).map((name) => {
       const { met, value } = answer.goal[name];
-      return h("span", {}, `${goalName(name)}: ${pretty(s.goal[name] ?? "")} `, h("b", { class: "met", "data-met": String(met) }, `${value ? `(${pretty(value)}) ` : ""}${MET[met] ?? "○"}`, h("span", { class: "hidden" }, w({ true: "met", false: "missed" }[met] ?? "open"))));
-    }));
+      const others = name === "reference" && !met && s.task === "compensator" ? ["feedforward", "integral_action"] : [];
+      return h("span", {}, `${goalName(name)}: ${pretty(s.goal[name] ?? "")} `, h("b", { class: "met", "data-met": String(met) }, `${value ? `(${pretty(value)}) ` : ""}${MET[met] ?? "○"}`, h("span", { class: "hidden" }, w({ true: "met", false: "missed" }[met] ?? "open"))), others.map((task) => h("button", { class: "quiet", "data-where": `reach.${task}`, onclick: () => turn(task) }, w("reached_by", { task: taskName(task) }))));
+    })));
   }
 
   function poleField(group) {
-    return h("input", { value: s.spec[group.key] ?? "", "data-set": group.key, "aria-label": w(`${group.label}s`), spellcheck: "false", onchange: (e) => typed(e.target, (t) => { s.spec[group.key] = t; sets[group.key] = handles(t); drawPlane(true); settle(); }) });
+    return textField(w(`${group.label}s`), s.spec[group.key], (t) => { s.spec[group.key] = t; sets[group.key] = handles(t); drawPlane(true); settle(); }, { "data-set": group.key });
   }
 
   function moved(final) {
     for (const key of Object.keys(sets)) {
       s.spec[key] = poles(sets[key]);
       const input = find(key, "set");
-      if (input && focused() !== input) input.value = s.spec[key];
+      write(input, s.spec[key]);
     }
     commit(final);
     drawPlane();
@@ -830,7 +882,7 @@ export function mount(element, transport, options = {}) {
     const mine = sv("g", {
       class: `handle ${group.mark}${isHeld ? " held" : ""}`, tabindex: 0, role: "slider", "data-handle": `${group.key}.${k}`,
       "aria-label": w("one_of", { pole: w(group.label), number: k + 1, count }), "aria-roledescription": w("pole"), "aria-valuemin": -100, "aria-valuemax": 100, "aria-valuenow": value(p.re), "aria-valuetext": spoken,
-      onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) { before = JSON.stringify(sets); drawPlane(); } },
+      ontouchstart: stay, onpointerdown: (e) => grab(e, group, p), onkeydown: (e) => key(e, group, p, k), onfocus: () => { if (!quiet) { before = JSON.stringify(sets); drawPlane(); } },
     }, places.map(glyph));
     const [x, y] = places[0], right = x < 250;
     const lines = [pretty(p.pair && p.im[0] ? `${text(p.re)} ± ${imaginary(p.im, " ")}` : text(p.re))];
@@ -875,6 +927,9 @@ export function mount(element, transport, options = {}) {
     const end = (back) => { drop(); ended(back); };
     for (const [where, what, hear] of heard) where.addEventListener(what, hear, true);
   }
+
+  /** Let a finger move what it touches, not the page: `touch-action` is ignored inside of a picture. */
+  const stay = (event) => event.preventDefault();
 
   function grab(event, group, p) {
     if (event.button) return;
@@ -924,7 +979,7 @@ export function mount(element, transport, options = {}) {
     const scrubbed = () => {
       held = "scrub";
       s.at[name] = onGrid(low + (Number(scrub.value) / 400) * (high - low), high - low);
-      fields[0].querySelector("input").value = s.at[name];
+      write(fields[0].querySelector("input"), s.at[name]);
       commit(false);
       ask();
     };
@@ -941,7 +996,7 @@ export function mount(element, transport, options = {}) {
       s.at[name] = text(plus(rational(s.at[name]) ?? [0, 1], ratio(moves[1] * step() * (e.shiftKey ? 10 : 1), GRID)));
       drawPointHandle();
       settle();
-    }, onpointerdown: grabPoint }, sv("circle", { class: "hit", r: 12 }), sv("circle", { class: "halo", r: 6 }), sv("circle", { class: "glyph", r: 3.4 }));
+    }, ontouchstart: stay, onpointerdown: grabPoint }, sv("circle", { class: "hit", r: 12 }), sv("circle", { class: "halo", r: 6 }), sv("circle", { class: "glyph", r: 3.4 }));
     svg.append(el.dot);
     svg.addEventListener("pointerdown", (e) => { if (!el.dot.contains(e.target)) grabPoint(e); });
     drawPointHandle();
@@ -962,7 +1017,7 @@ export function mount(element, transport, options = {}) {
       if (inside) el.dot.setAttribute("transform", `translate(${placeOf(0)} ${placeOf(1)})`);
       el.dot.setAttribute("aria-valuetext", region.parameters.map((n) => `${n} = ${pretty(s.at[n])}`).join(", "));
     }
-    region.parameters.forEach((name) => { const input = find(`at.${name}`); if (input && focused() !== input) input.value = s.at[name]; });
+    region.parameters.forEach((name) => { const input = find(`at.${name}`); write(input, s.at[name]); });
   }
 
   function grabPoint(event) {
@@ -1012,7 +1067,7 @@ export function mount(element, transport, options = {}) {
 
   /** Take away what was wrong; what a field of the page itself refused stays until the field is changed. */
   function clearWrong() {
-    if (refused) return;
+    if ([...unentered.values()].includes("refused")) return;
     root.querySelectorAll(".wrong").forEach((e) => e.replaceChildren());
     root.querySelectorAll("[aria-invalid]").forEach((e) => e.removeAttribute("aria-invalid"));
     say("");
@@ -1126,15 +1181,17 @@ export function mount(element, transport, options = {}) {
     for (const t of ticks(t0, t1, 7)) made.push(sv("line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), sv("text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(all.lg ? Number((10 ** t).toPrecision(2)) : t))));
     for (const v of got.rules ?? ticks(low, high, 6)) made.push(sv("line", { class: v === (got.axis ?? 0) ? "axis" : "rule", x1: 40, y1: py(v), x2: 464, y2: py(v) }), sv("text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
     made.push(sv("text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, all.lg ?? (all.discrete ? "k" : "t")));
-    const told = [], named = [];
-    for (const line of got.lines) {
-      const n = line.heights.length - 1, place = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
+    const told = [], named = [], ends = svg === el.curves && all.step ? all.ends : [];
+    if (svg === el.curves && all.step) made.push(sv("line", { class: "goal", x1: 40, y1: py(1), x2: 464, y2: py(1) }), sv("text", { x: 458, y: py(1) - 5, "text-anchor": "end" }, "r = 1"));
+    for (const [place, line] of got.lines.entries()) {
+      const n = line.heights.length - 1, spot = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
       const kind = `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`;
-      made.push(sv("path", { class: kind, d: pathOf(line.heights, place) }));
-      if (all.discrete) line.heights.forEach((v, k) => { const [x, y] = place(v, k).split(" "); made.push(sv("circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
+      made.push(sv("path", { class: kind, d: pathOf(line.heights, spot) }));
+      if (all.discrete) line.heights.forEach((v, k) => { const [x, y] = spot(v, k).split(" "); made.push(sv("circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
       const settles = [Number(line.overshoot) ? w("overshoots", { percent: pretty(line.overshoot) }) : "", line.settles ? w("settles", { time: pretty(line.settles) }) : "", line.signal === "u" && line.peak ? w("peak", { peak: pretty(line.peak) }) : ""].filter(Boolean).join(", ");
-      if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(line.last) })}${settles && `, ${settles}`}`);
-      named.push(h("span", {}, sv("svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, sv("path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, settles)));
+      if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(ends[place] ?? line.last) })}${settles && `, ${settles}`}`);
+      const said = [ends[place] ? w("ends", { end: pretty(ends[place]) }) : "", settles].filter(Boolean).join(", ");
+      named.push(h("span", {}, sv("svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, sv("path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, said)));
     }
     if (all.end) svg.setAttribute("aria-label", told.length ? w("up_to", { end: all.end, told: told.join("; ") }) : w(svg === el.effort ? "effort" : "responses"));
     svg.replaceChildren(...made);

@@ -18,7 +18,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator  # type: ignore[import-untyped]
-from scipy.signal import step as step_response  # type: ignore[import-untyped]
+from scipy.signal import dstep  # type: ignore[import-untyped]
+from scipy.signal import step as step_response
 
 from symobs.applications.live import answer
 from symobs.applications.live.assets import MOST_BYTES
@@ -268,7 +269,11 @@ def test_goals_are_held_against_poles_and_gains() -> None:
     told = asked(SERVO, goal={"settling": "2.3", "overshoot": "4"}, courses={"step": True})["goal"]
     times, heights = step_response(([319, 400], [1, 24, 184, 480, 400]), T=np.linspace(0, 12, 120_001))
     late = times[np.nonzero(abs(heights - 1) > max(abs(heights - 1)) / 50)[0][-1]]
-    assert {name: each["met"] for name, each in told.items()} == {"settling": False, "overshoot": True}
+    assert {name: each["met"] for name, each in told.items()} == {
+        "settling": False,
+        "overshoot": True,
+        "reference": True,
+    }
     assert float(told["overshoot"]["value"]) == pytest.approx(100 * (max(heights) - 1), abs=6e-3)
     assert float(told["settling"]["value"]) == pytest.approx(late, rel=0.01)
     # modes close to each other have not settled where the slowest one alone has: K = (65/4, 7), L = (19, 81)
@@ -281,7 +286,11 @@ def test_goals_are_held_against_poles_and_gains() -> None:
     system = (loop, np.array([[0], [0], [-19], [-81]]), np.array([[1, 0, 0, 0]]), np.array([[0]]))
     times, heights = step_response(system, T=np.linspace(0, 6, 120_001))
     late = times[np.nonzero(abs(heights - 1) > max(abs(heights - 1)) / 50)[0][-1]]
-    assert {name: each["met"] for name, each in told.items()} == {"settling": False, "overshoot": True}
+    assert {name: each["met"] for name, each in told.items()} == {
+        "settling": False,
+        "overshoot": True,
+        "reference": True,
+    }
     assert float(told["overshoot"]["value"]) == pytest.approx(100 * (max(heights) - 1), abs=6e-2)
     assert float(told["settling"]["value"]) == pytest.approx(late, rel=0.01)
     # where a mode grows nothing settles, and where the peak is an undershoot or the final value 0 nothing is read off
@@ -312,6 +321,73 @@ _LOOPS: dict[str, tuple[dict[str, Any], dict[str, str]]] = {
     ),
     "observer": ({"A": "[3 1; 0 1/4]", "C": "[1 0]", "dt": 1}, {"poles": "1/2, 1/3"}),
 }
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_where_y_ends_after_a_step_is_a_goal(seed: int) -> None:
+    draw = np.random.default_rng(seed)
+    order, sampled = 2 + seed % 3, seed % 4 == 3
+    poles = {
+        name: [Fraction(int(k), 20) if sampled else -Fraction(int(k), 2) for k in draw.integers(1, 12, order)]
+        for name in ("control_poles", "observer_poles")
+    }
+    rank, a, b, c = 0, np.eye(order, dtype=int), np.eye(order, 1, dtype=int), np.eye(1, order, dtype=int)
+    while rank < 2 * order:
+        a = draw.integers(-2, 3, (order, order))
+        a[:, 0] *= seed % 5 != 0  # an integrator, and y ends at r
+        powers = [np.linalg.matrix_power(a, k) for k in range(order)]
+        rank = sum(map(np.linalg.matrix_rank, (np.hstack([p @ b for p in powers]), np.vstack([c @ p for p in powers]))))
+        b, c = (draw.integers(-2, 3, shape) for shape in ((order, 1), (1, order))) if rank < 2 * order else (b, c)
+    written = {
+        name: f"[{'; '.join(' '.join(str(int(entry)) for entry in row) for row in table)}]"
+        for name, table in zip("ABC", (a, b, c), strict=True)
+    }
+    plant = {**written, **({"dt": 1} if sampled else {})}
+    problem = {
+        "task": "compensator",
+        "plant": plant,
+        "specification": {name: ", ".join(map(str, values)) for name, values in poles.items()},
+    }
+    told = asked(problem, courses={"step": True})
+    assert told["status"] == "done"
+    k, gain = (np.array([[float(Fraction(x)) for x in row] for row in told["result"][name]]) for name in "KL")
+    loop = np.block([[a, -b @ k], [gain @ c, a - b @ k - gain @ c]])
+    entering = np.vstack([np.zeros((order, 1)), -gain])
+    row = np.hstack([c, np.zeros((1, order))])
+    if sampled:
+        _, heights = dstep((loop, entering, row, np.zeros((1, 1)), 1), n=400)
+        end = heights[0][-1, 0]
+    else:
+        _, heights = step_response((loop, entering, row, np.zeros((1, 1))), T=np.linspace(0, 60, 3001))
+        end = heights[-1]
+    (shown,) = told["courses"]["ends"]
+    assert float(shown) == pytest.approx(end, rel=6e-3, abs=1e-4)
+    assert told["goal"]["reference"] == {"met": bool(abs(end - 1) < 1e-9), "value": shown}
+    assert float(told["courses"]["window"][1][1]) >= 1  # the reference is in the picture
+
+
+def test_where_a_loop_is_not_stable_y_ends_nowhere() -> None:
+    told = asked(
+        {**SERVO, "specification": {"control_poles": "1, -2", "observer_poles": "-3, -4"}}, courses={"step": True}
+    )
+    assert told["goal"]["reference"] == {"met": False, "value": ""}
+
+
+def test_the_largest_gain_is_said_beside_its_limit() -> None:
+    told = asked(
+        {**SERVO, "specification": {"control_poles": "-2, -2", "observer_poles": "-10, -10"}}, goal={"gain": "80"}
+    )
+    assert told["goal"]["gain"] == {"met": False, "value": "81"}  # K = (4, 3), L = (19, 81)
+
+
+def test_a_root_is_no_letter_of_a_region() -> None:
+    plant = {"A": "[0 1; sqrt(2) -1]", "B": "[0; 1]", "C": "[1 0]"}
+    problem, _ = problem_of(asked({**SERVO, "plant": plant}, "begin", task="stability_region")["link"])
+    assert problem["specification"]["parameters"] == "k1, k2"
+    assert set(problem["symbols"]) == {"k1", "k2"}
+    problem["specification"]["parameters"] = ["k1", "k2"]
+    (error,) = asked(problem)["errors"]
+    assert error["message"].startswith("the data contain sqrt(2)")
 
 
 def _table(text: str) -> Any:
