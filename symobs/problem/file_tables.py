@@ -112,6 +112,8 @@ def _toml_repair(message: str, line: str, text: str) -> str:
         return "a problem in JSON begins with {"
     if "overwrite" in message or "twice" in message:
         return "keep one of them"
+    if "newline" in message.lower() or message.startswith("Illegal character '\\n'"):
+        return 'write a matrix on one line, with ; between its rows, "[0 1; 0 -1]", or a text of several lines in """'
     brackets = re.search(r"""=\s*\[([^"']*)""", line)
     if brackets and re.search(r"""[^,;\s\[][ ;]+[-+\w(]""", brackets[1]):
         return 'write commas between the entries, or the matrix in quotes: "[0 1; 0 -1]"'
