@@ -20,6 +20,11 @@ LINKS = {
     "../CONTRIBUTING.md": "contributing.md",
     "../CHANGELOG.md": "changelog.md",
     "../worked_examples/": "gallery/index.md",
+    "../symobs/tasks/": "reference/tasks.md",
+    "../symobs/cli/": "reference/command_line.md",
+    "../symobs/problem/": "reference/problem_file.md",
+    "../symobs/pages/formats/json.py": "reference/json.md",
+    "../symobs/__init__.pyi": "reference/python.md",
     "docs/": "",
 }
 
@@ -70,9 +75,20 @@ def linked(text: str) -> str:
     return text
 
 
-def relink(_: Sphinx, __: str, source: list[str]) -> None:
-    """Let the links of a page lead to pages of the site."""
+#: A part of the first page: its title and the pages in it.
+_PART = re.compile(r"^## (.*)\n\n((?:- \[.*\]\(.*\.md\)\n)+)", re.MULTILINE)
+
+
+def relink(_: Sphinx, name: str, source: list[str]) -> None:
+    """Let the links of a page lead to pages of the site; those of the first page are its table of contents."""
     source[0] = re.sub(r"^<!--.*?-->\n", "", linked(source[0]), flags=re.DOTALL)
+    if name == "index":
+        source[0] = _PART.sub(_table_of_contents, source[0])
+
+
+def _table_of_contents(part: re.Match[str]) -> str:
+    pages = "\n".join(re.findall(r"\]\((.*)\.md\)", part[2]))
+    return f"```{{toctree}}\n:caption: {part[1]}\n:maxdepth: 1\n\n{pages}\n```\n"
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

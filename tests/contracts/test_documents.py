@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+from pathlib import PurePosixPath
 
 from tests.kit import tabled
 from tests.support.paths import ROOT
@@ -10,6 +13,11 @@ from tests.support.paths import ROOT
 PATH = re.compile(r"`((?:symobs|tests|docs|worked_examples|latex_templates|\.ci|\.github)/[\w./]+)`")
 PROGRAM = re.compile(r"python -m (tests[\w.]+)")
 ROOM = re.compile(r"^\| `(\w+)` \|", re.MULTILINE)
+
+
+LINK = re.compile(r"\]\(([^)\s:]+)\)")
+FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
 
 
 def text_of(page: str) -> str:
@@ -29,3 +37,22 @@ def test_every_room_is_described() -> None:
     rooms = ROOM.findall(text_of("docs/architecture.md"))
     packages = {path.parent.name for path in (ROOT / "symobs").glob("[!_]*/__init__.py")}
     assert sorted(rooms) == sorted(packages)
+
+
+def test_every_link_leads_somewhere_on_a_plain_checkout() -> None:
+    run = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True)
+    files = run.stdout.splitlines()
+    known = {*files, *(str(folder) for file in files for folder in PurePosixPath(file).parents)}
+    texts = {page: FENCE.sub("", text_of(page)) for page in files if page.endswith(".md")}
+    anchors = {
+        page: {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in HEADING.findall(text)}
+        for page, text in texts.items()
+    }
+    lost = []
+    for page, text in texts.items():
+        for link in LINK.findall(text):
+            path, _, anchor = link.partition("#")
+            there = os.path.normpath(f"{PurePosixPath(page).parent}/{path}") if path else page
+            if there not in known or (anchor and anchor not in anchors.get(there, {anchor})):
+                lost.append(f"{page}: {link}")
+    assert lost == []

@@ -8,10 +8,12 @@ import re
 import subprocess
 import tomllib
 from html import unescape
+from io import BytesIO
 from typing import TYPE_CHECKING, Any
 from urllib.parse import unquote
 
 import pytest
+from matplotlib.image import imread
 
 from symobs.pages.page.detail_level import DETAILS
 from tests.support.tools.command_line import EXAMPLES, SERVO, inside
@@ -171,6 +173,26 @@ _PARTED = """() => [...document.querySelectorAll('p math')].flatMap(math => [mat
 
 
 @pytest.mark.slow
+def test_a_display_that_goes_on_shows_it(chromium: Any, files: Path) -> None:
+    context = chromium.new_context(viewport={"width": 360, "height": 700})
+    page = context.new_page()
+    (files / "plain.html").write_text(html(), "utf-8")
+    page.goto((files / "plain.html").as_uri())
+    seen = set()
+    for display in page.locator(".display").all():
+        excess = display.evaluate("e => e.scrollWidth - e.clientWidth")
+        if 0 < excess < 30:  # the shadow fades in
+            continue
+        is_wide = excess > 0
+        for left in (0, 10_000):
+            display.evaluate("(e, left) => { e.scrollLeft = left; }", left)
+            dark = imread(BytesIO(display.screenshot()))[1, :, :3].min(axis=1) < 0.9  # a line above the formula
+            assert (bool(dark[0]), bool(dark[-1])) == (is_wide and left > 0, is_wide and not left)
+        seen.add(is_wide)
+    assert seen == {True, False}
+    context.close()
+
+
 def test_no_line_begins_or_ends_between_mathematics_and_a_sign(chromium: Any, files: Path) -> None:
     page = chromium.new_page()
     page.goto((files / "page.html").as_uri())

@@ -215,9 +215,26 @@ def solved(found: Any, options: PageOptions, report_progress: Progress, *, only_
     if expect:
         return Outcome(tuple(outputs), tuple(unmet), EXIT_UNDECIDED if is_open else EXIT_NO if unmet else 0)
     verdicts = {result.verdict for result in results}
+    if not shows_parts:
+        unmet = [*unmet, *_cautions(document_of(results))]
     messages = [f"{result.task}: {result.verdict}" for result in results if result.verdict in {"no", "undecided"}]
     code = EXIT_NO if "no" in verdicts else EXIT_UNDECIDED if "undecided" in verdicts else 0
     return Outcome(tuple(outputs), (*unmet, *messages), code)
+
+
+def _cautions(document: Any) -> list[str]:
+    """Return which designs do not converge: a page says so, a gain alone does not."""
+    from symobs.applications.live.sentences import stability_of  # noqa: PLC0415 - only with --print
+    from symobs.formula.phrases.languages import language_named  # noqa: PLC0415
+    from symobs.pages.cards import CardPrinter  # noqa: PLC0415
+
+    language = language_named(document.language)
+    found = [(result, stability_of(result)) for result in document.results if result.gains and result.verdict != "no"]
+    return [
+        f"{result.task}: {stable.told(CardPrinter(result, document.convention, language))}"
+        for result, stable in found
+        if stable.known and stable.poles
+    ]
 
 
 def _at(results: tuple[Any, ...], settings: Mapping[str, str]) -> tuple[Any, ...]:

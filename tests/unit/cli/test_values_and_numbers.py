@@ -100,3 +100,11 @@ def test_a_table_of_numbers_that_would_be_empty_is_refused(folder: Path, kind: s
     run = inside("solve", "step.toml", "--format", kind, folder=folder)
     assert (run.code, run.out) == (3, "")
     assert f"needs numbers, and {names}; write --format text" in run.err
+
+
+def test_a_gain_alone_says_that_its_loop_is_unstable() -> None:
+    chain = ("state_feedback", "--A", "[0 1 0; 0 0 1; 0 0 0]", "--B", "[0; 0; 1]", "--print", "K")
+    run = inside(*chain, "--poles=2, 3, 4")
+    assert (run.code, run.out) == (0, "K = [-24 26 -9]\n")  # (s − 2)(s − 3)(s − 4)
+    assert run.err.strip() == "state_feedback: Closed loop unstable: poles at 2, 3, 4"
+    assert inside(*chain, "--poles=-2, -3, -4").err == ""

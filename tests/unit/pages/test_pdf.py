@@ -19,6 +19,7 @@ from symobs.pages.formats import pdf
 from symobs.pages.formats.pdf import Pdf, compiled
 from tests.kit import tabled
 from tests.support.examples import document_of
+from tests.support.paths import ROOT
 from tests.support.problems.steps import document, with_a_case
 from tests.support.tools.command_line import SAFETY
 
@@ -82,6 +83,20 @@ def test_tex_reads_nothing_outside_its_folder(name: str, require_tool: RequireTo
     require_tool("pdflatex")
     with pytest.raises(TypesettingError, match="not found"):
         compiled(article(rf"\input{{{name}}}"))
+
+
+#: A display with its line takes some 27 pt of the 724 pt of a page, by hand.
+@pytest.mark.parametrize(("displays", "pages"), [(20, 1), (27, 1), (40, 2)], ids=["one", "drawn in", "two"])
+def test_a_last_page_is_drawn_in_where_little_stands_on_it(
+    displays: int, pages: int, require_tool: RequireTool, tmp_path: Path
+) -> None:
+    begin = (ROOT / "latex_templates/article.tex").read_text("utf-8")
+    geometry = begin[begin.index(r"\usepackage[hmargin") :].partition("\n")[0]
+    told = "".join(rf"Line {k}.\[x={k}\]" for k in range(displays))
+    source = rf"\documentclass[10pt,a4paper]{{article}}{geometry}\parindent=0pt\begin{{document}}{told}\end{{document}}"
+    words = words_of(compiled(source), tmp_path, require_tool("pdftotext"))
+    assert words.count("\f") == pages
+    assert f"Line {displays - 1}." in words
 
 
 def test_tex_runs_no_program(require_tool: RequireTool, tmp_path: Path) -> None:

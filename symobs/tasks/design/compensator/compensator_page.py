@@ -221,7 +221,10 @@ def _state_space(page: Builder, design: CompensatorDesign) -> None:
     else:
         page.define("A_c", closed, *numbers, say="observer_closed_matrix", **both)
         page.conclude_silently(own)
-        page.equal("x_hat' = A_c x_hat + L y = #A_c x_hat + #L y", "u = (-#K) x_hat", say="compensator_written")
+        # A_c, L and K stand above; of small ones the whole is seen at a glance
+        is_small = page.plant.order <= readability.WRITTEN_OUT_ORDER
+        state, law = (" = #A_c x_hat + #L y", "u = (-#K) x_hat") if is_small else ("", "u = (-K) x_hat")
+        page.equal(f"x_hat' = A_c x_hat + L y{state}", law, say="compensator_written")
     draw_compensator(page)
 
 
