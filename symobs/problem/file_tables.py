@@ -115,7 +115,7 @@ def _toml_repair(message: str, line: str, text: str) -> str:
     if re.search("[“”„‟«»]", line):
         return 'write straight quotes: "'
     if "newline" not in message and (message.startswith("Illegal character '\\n'") or "Unterminated" in message):
-        return 'close the quotes on their line; write a matrix on one line, with ; between its rows: "[0 1; 0 -1]"'
+        return 'close the quotes on their line; write a matrix on one line, with ; between its rows, "[0 1; 0 -1]"'
     if "\\" in message and "\\" in line:
         return "write LaTeX in single quotes: A = '\\begin{bmatrix} … \\end{bmatrix}'"
     if re.match(r"\s*[\w.]+\s*:", line):

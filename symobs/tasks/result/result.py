@@ -349,8 +349,7 @@ class Document:
     printed: tuple[str, ...] = field(default=(), kw_only=True)
     #: The significant digits of the numbers on a page: 0 writes them exactly, None does as the data are typed.
     digits: int | None = field(default=None, kw_only=True)
-    #: What a sheet adds to each part of a question: its points, in words, and the room for an answer; or the table of the
-    #: points of a solution.
+    #: What a sheet adds to each part of a question, points in words and room for an answer; or the points of a solution.
     handout: tuple[Any, ...] = field(default=(), kw_only=True)
     #: What a page of HTML offers besides its text.
     web: WebPage = field(default=PLAIN, kw_only=True)
