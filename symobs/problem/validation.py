@@ -355,6 +355,10 @@ def _symbols(table: Mapping[str, Any], errors: Errors) -> Symbols:
     for name in list(table)[:_MAX_SYMBOLS]:
         with errors:
             typed = declared_name(typed_name(name), f"symbols.{shown(name, 40)}")
+            if typed in kept:
+                raise InputError(
+                    f"{typed} is declared twice", where=f"symbols.{shown(name, 40)}", repair="keep one of them"
+                )
             kept[typed] = "real"
             entry, before = table[name], len(errors.found)
             for part in [{key: value} for key, value in entry.items()] if isinstance(entry, Mapping) else [entry]:

@@ -223,7 +223,7 @@ def _column(value: object, symbols: Symbols, where: str) -> Matrix | None:
     try:
         read = parse_matrix(rows, symbols.names, where=where, functions=True)
     except ShapeMismatch:
-        if not isinstance(rows, str) or "," in rows:
+        if not isinstance(rows, str) or "," in rows or not re.search(r"[-+*/^(]|\b(?:sin|cos|tan|exp|sqrt)\b", rows):
             raise
         read = _by_rows(rows, symbols, where)
     read = read.T if read.shape[0] == 1 else read

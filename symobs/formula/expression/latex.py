@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-_TABLE = r"(?:[bpBvV]?(?:small)?matrix|array)\}"
+_TABLE = r"(?:[bpB]?(?:small)?matrix|array)\}"
 _ENVIRONMENT = re.compile(rf"\\begin\{{{_TABLE}(?:\{{[lcr|]*\}})?(.*?)\\end\{{{_TABLE}", re.DOTALL)
 _DISPLAY = re.compile(
     r"\\(?:begin|end)\{(?:align|equation|gather|multline|eqnarray|split|aligned|displaymath|math)\*?\}"
@@ -25,7 +25,16 @@ _LONGEST = 20_000
 _DEEPEST = 20
 _ROOT = re.compile(r"\\sqrt\s*\{([^{}]*)\}")
 _ABOVE, _BELOW = re.compile(r"\^\s*\{([^{}]*)\}"), re.compile(r"_\s*\{([^{}]*)\}")
-_SIGNS = {"cdot": "*", "times": "*", "div": "/", "top": "T", "implies": "=>", "land": " and ", "wedge": " and "}
+_SIGNS = {
+    "pm": "±",
+    "cdot": "*",
+    "times": "*",
+    "div": "/",
+    "top": "T",
+    "implies": "=>",
+    "land": " and ",
+    "wedge": " and ",
+}
 _SIGNS |= {"lor": " or ", "vee": " or ", "lt": "<", "gt": ">", "ne": "!=", "neq": "!="}
 _SIGNS |= {"approx": "≈", "le": "<=", "leq": "<=", "ge": ">=", "geq": ">="}
 
@@ -38,14 +47,15 @@ def without_latex(text: str) -> str:
         return text
     text = re.sub(r"\\text\{[^{}]*\}\s*\\qquad", "", text)  # the words before a display
     text = re.sub(r"(?<!\\)\\[][()]|~(?!=)", " ", text)  # the signs around one, and blanks
-    text = re.sub(r"\\bar\s*\{?\s*([A-Za-z])\s*\}?", r"\1_bar", _SPACES.sub(" ", text))
+    text = re.sub(r"\^\s{0,9}(?:\{\s{0,9}\\circ\s{0,9}\}|\\circ\b)", "°", text)
+    text = re.sub(r"\\bar\s{0,9}\{?\s{0,9}([A-Za-z])\s{0,9}\}?", r"\1_bar", _SPACES.sub(" ", text))
     for _ in range(_DEEPEST):
         before = text
         text = _SET.sub(lambda f: f[1] if f[1] is not None else f[2], text)
         text = _QUOTIENT.sub(lambda f: f"(({f[1] or f[2]})/({f[3] or f[4]}))", text)
         text = _ROOT.sub(r" sqrt(\1)", text)
-        text = _ABOVE.sub(lambda f: f"^{f[1].strip()} " if re.fullmatch(r"\s*\w+\s*", f[1]) else f"^({f[1]})", text)
-        text = _BELOW.sub(lambda f: "_" + re.sub(r"\s+", "", f[1]) + " ", text)
+        text = _ABOVE.sub(lambda f: f"^{f[1].strip()}" if f[1].strip() == "T" else f"^({f[1]})", text)
+        text = _BELOW.sub(_indexed, text)
         if before == text:
             break
     text = _ENVIRONMENT.sub(lambda found: _rows_of_latex(found[1]), text)
@@ -56,6 +66,12 @@ def without_latex(text: str) -> str:
     text = re.sub(r"[(\[|]\s*(\[[^][]*\])\s*[)\]|]", r"\1", text)
     text = re.sub(r"\\[{}]", lambda found: found[0][1], text)
     return _ROW_END.sub("\n", text).replace("&", " ")
+
+
+def _indexed(found: re.Match[str]) -> str:
+    """Return an index, with the sign of a product where a letter or a digit follows."""
+    follows = found.string[found.end() : found.end() + 1]
+    return "_" + re.sub(r"\s+", "", found[1]) + ("*" if follows.isalnum() else "")
 
 
 def _rows_of_latex(body: str) -> str:

@@ -77,7 +77,8 @@ def refusal(name: str) -> tuple[str, str] | None:
 class Scope:
     """The names, the budget and the context of the texts of one call.
 
-    In `poles` an undeclared j2 is 2 j, unless it is one of the `letters` that are in use.
+    In a `polynomial` an undeclared λ or p may be its variable.  In `poles` an undeclared j2 is 2 j, unless it is one of the
+    `letters` that are in use.
     """
 
     names: Names
@@ -88,6 +89,7 @@ class Scope:
     rounding: bool = False
     roots: bool = False
     poles: bool = False
+    polynomial: bool = False
     letters: frozenset[str] = frozenset()
 
     @staticmethod
@@ -171,6 +173,11 @@ _ASCII = (
     | dict.fromkeys(map(ord, MINUS + "⁻"), "-")
     | dict.fromkeys(map(ord, "·⋅×"), "*")
 )
+
+
+def ascii_names(text: str) -> str:
+    """Return a text with its Greek letters spelled out."""
+    return "".join(f" {_SPELT[letter]} " if letter in _SPELT else letter for letter in text)
 
 
 def ascii_of(glyphs: str) -> str:

@@ -198,7 +198,8 @@ def parse_polynomial(
         message = "a polynomial is written out, but a list of coefficients came"
         raise InputError(message, where=where, repair=f'write for example "{variable}^2 + 9 {variable} + 20"')
     value = right_side(value) if isinstance(value, str) else value
-    polynomial = _entry(value, Scope.of(names, variable, where, functions=functions), where)
+    scope = replace(Scope.of(names, variable, where, functions=functions), polynomial=True)
+    polynomial = _entry(value, scope, where)
     if isinstance(polynomial, Complex):
         message, repair = f"the polynomial in {variable} has complex coefficients", "write the conjugate factors too"
     elif not polynomial.is_polynomial_in(variable):
@@ -213,13 +214,16 @@ def parse_polynomial(
 
 
 #: "p(s) = …", "χ(λ) = …", "Y(s)/U(s) = G(s) = …"; "… = 0"; and the input behind a transfer function, "Y(s) = … U(s)".
-_OF = r"[^\W\d]\w{0,20}\s*\(\s*(?:s|z|p|lambda|lam|λ)\s*\)"
-_FUNCTION_OF = re.compile(rf"\s*(?:{_OF}\s*(?:/\s*{_OF}\s*)?=\s*)+(?!0\s*$)")
+_OF = r"{}[\w]{{0,20}}\s{{0,9}}\(\s{{0,9}}(?:s|z|p|lambda|lam|λ)\s{{0,9}}\)\s{{0,9}}"
+_QUOTIENT = rf"{_OF.format('[YXCZ]')}/\s{{0,9}}{_OF.format('[URFVW]')}"
+_FUNCTION_OF = re.compile(rf"\s{{0,9}}(?:(?:{_QUOTIENT}|{_OF.format('[^0-9]')})=\s{{0,9}})+(?!0\s{{0,9}}$)")
 _INPUT = re.compile(r"(?<=[)\d])\s*[*·]?\s*[UVRW]\(\s*[szp]\s*\)\s*$")
 
 
 def right_side(text: str) -> str:
     """Return the expression of "p(s) = s^2 + 1", "s^2 + 1 = 0", "Y(s)/U(s) = 1/s" and "Y(s) = 1/s U(s)"."""
+    if len(text) > MOST_CHARACTERS:
+        return text
     text = without_latex(text)
     left = _FUNCTION_OF.match(text)
     if left is not None:
@@ -236,17 +240,26 @@ _TIMES = {"double": 2, "twice": 2, "doppelt": 2, "zweifach": 2, "triple": 3, "dr
 _MULTIPLE = re.compile(rf"\(\s*({'|'.join(_TIMES)})\s*\)\s*$")
 
 
+#: Longer texts are no lists of poles by name.
+_LONGEST_LIST = 2_000
+
+
 def without_pole_names(text: str) -> str:
     """Return the poles of "s = -1, -2", "λ1 = λ2 = -5", "p_{1,2} = -1 ± j" and "-5 (double)", one after the other."""
-    if "=" not in text and "(" not in text:
+    if ("=" not in text and "(" not in text) or len(text) > _LONGEST_LIST:
         return text
     found: list[str] = []
-    for piece in _COMMA_OUTSIDE.split(_SET.sub(r"\1", text)):
+    pieces = _COMMA_OUTSIDE.split(_SET.sub(r"\1", text))
+    for place, piece in enumerate(pieces):
         pole, count = piece, 1
         if named := _NAMED_POLE.fullmatch(pole):
             pole = named[2]
-            indices = [len(name.split(",")) for name in named[1].split("=")[:-1]]
-            count = 1 if len(pairs(pole)) > 1 else sum(indices)
+            count = sum(len(name.split(",")) for name in named[1].split("=")[:-1])
+            behind = pieces[place + 1 : place + count]
+            if len(pairs(pole)) > 1:
+                count = max(1, count // 2)
+            elif count > 1 and len(behind) == count - 1 and not any("=" in each for each in behind):
+                count = 1  # a value for each index follows
         if multiple := _MULTIPLE.search(pole):
             pole, count = pole[: multiple.start()], count * _TIMES[multiple[1]]
         found += [pole.strip()] * count

@@ -25,6 +25,7 @@ from symobs.formula.expression.names import (
     PRINTED_NAME,
     SUPERSCRIPTS,
     Scope,
+    ascii_names,
     ascii_of,
     refusal,
     spellings,
@@ -113,10 +114,18 @@ _PART = re.compile(r"(?:[^(),\s]|\((?:[^()]|\([^()]*\))*\)|\s+(?=[-+*/^]\s)|(?<=
 _SIZES, _MOST_SIZE = re.compile(r"[0-9]{1,3}(?:\s*,\s*[0-9]{1,3})?"), 30
 #: e^{-2t} and e^(-2t), where e is no name.
 _EXP = re.compile(r"\s*(?:\^|\*\*)(?=\s*[({])")
-#: The argument of sin ωt and cos 2t: numbers and names side by side, up to a sign that leaves no doubt.
-_FACTOR = rf"(?:[0-9]+(?:\.[0-9]+)?|(?!(?:{'|'.join(FUNCTIONS)})\b){PRINTED_NAME})"
-_BARE = re.compile(rf"\s+((?>{_FACTOR}(?:\s*{_FACTOR})*))(?=\s*(?:[-+),;\]}}]|$|(?:{'|'.join(FUNCTIONS)})\b))")
-_BARE_IN_BRACKETS = re.compile(rf"[ \t]+((?>{_FACTOR}+))(?=\s*(?:[-+),;\]]|$|\s))(?!\s*[/^*(])")
+#: The argument of sin ωt and cos 2t: a number and a name, and of a wave two where the second is the time; in brackets,
+#: where blanks set entries apart, one.  What follows leaves no doubt where the argument ends.
+_OTHER = rf"(?!(?:{'|'.join(FUNCTIONS)})\b){PRINTED_NAME}"
+_COUNTED = r"[0-9]+(?:\.[0-9]+)?"
+_ENDS = rf"(?=\s*(?:[-+),;\]}}]|$|(?:{'|'.join(FUNCTIONS)})\b))"
+_FACTOR = rf"(?>{_COUNTED}(?: ?{_OTHER})?|{_OTHER})"
+_BARE_IN_BRACKETS = re.compile(rf"[ \t]{{1,9}}((?>{_COUNTED}(?:{_OTHER})?|{_OTHER})){_ENDS}")
+_BARE = re.compile(rf"\s{{1,9}}({_FACTOR}){_ENDS}")
+_BARE_IN_TIME = re.compile(rf"\s{{1,9}}({_FACTOR} (?<!\st )[tk](?![\w{{(])){_ENDS}")
+_WAVES = {"sin", "cos", "sinh", "cosh"}
+#: The entries that words may make in one text.
+_MOST_MADE = 2_500
 _ROW = re.compile(r"[^][;\r\n]*")
 _CLOSING = {"(": ")", "[": "]"}
 #: Braces are parentheses: e^{-4t}.
@@ -174,6 +183,7 @@ class Tokeniser:
         self.spaced = False
         #: Where the text goes on after the present token: behind the argument that it has taken.
         self.ahead = 0
+        self.made = 0
         #: Of each open bracket, whether commas set the entries of its present row apart.
         self.commas: list[bool] = []
 
@@ -366,10 +376,21 @@ class Tokeniser:
         last = self.tokens[-1] if self.tokens else None
         if last is None or last.type != "VALUE" or not isinstance(last.value, Scalar) or not last.value.is_constant:
             raise self.source.error(f'"{unit}" belongs behind a number', at, "write 30° or 5 %")
-        if unit == "°" and not self.scope.functions:
+        before = self.tokens[-2].type if len(self.tokens) > 1 else ""
+        follows = self.text[at + 1 :].lstrip()[:1]
+        is_angle = self.source.where.startswith("plant.equilibrium") or any(map(self._is_called, self.open))
+        if unit == "°" and not is_angle:
             raise self.source.error("an angle in degrees stands where no angle is asked for", at, "write a number")
+        if unit == "%" and (before in {"MULTIPLY", "POWER"} or follows.isalnum() or follows in {"(", "%"}):
+            message = "this per cent sign may be a remark, or belong to a quotient or a product"
+            raise self.source.error(message, at, "write the number itself, 0.05 for 5 %")
         value = last.value / 100 if unit == "%" else last.value * Scalar.symbol(PI) / 180
         self.tokens[-1] = Token("VALUE", last, last.start, value)
+
+    def _is_called(self, bracket: Token) -> bool:
+        """Return whether an open bracket holds the argument of a function."""
+        place = next(place for place, token in enumerate(self.tokens) if token is bracket)
+        return place > 0 and self.tokens[place - 1].type == "FUNCTION"
 
     def _raised(self, power: str, at: int) -> None:
         """Add a power that is written above the line."""
@@ -422,14 +443,18 @@ class Tokeniser:
             self._add("VALUE", name, at, self.symbols.get(name) or self._symbol(name, at, called=called))
         elif called:
             self._add("FUNCTION", name, at)
-        elif self.scope.functions and (
-            argument := (_BARE_IN_BRACKETS if self._in_brackets() else _BARE).match(self.text, end)
-        ):
+        elif self.scope.functions and (argument := self._bare(name, end)):
             self._add("FUNCTION", name, at)
             self._grouped(*argument.span(1))
             self.ahead = argument.end()
         else:
             raise self.source.error(f'"{name}" is a function', at, f"write its argument in parentheses: {name}( )")
+
+    def _bare(self, name: str, end: int) -> re.Match[str] | None:
+        """Return the argument of a function without parentheses, where it has one reading."""
+        if self._in_brackets():
+            return _BARE_IN_BRACKETS.match(self.text, end)
+        return _BARE.match(self.text, end) or (_BARE_IN_TIME.match(self.text, end) if name in _WAVES else None)
 
     def _grouped(self, start: int, end: int) -> None:
         """Take a part of the text as if it stood in parentheses."""
@@ -455,6 +480,10 @@ class Tokeniser:
                 message = f"{name}( ) takes numbers of rows and columns"
                 raise self.source.error(message, at, f"write {CONSTRUCTORS[name]}")
             entries, (rows, columns) = [], (sizes * 2)[:2]
+        self.made += rows * columns
+        if self.made > _MOST_MADE:
+            message, repair = f"matrices by words have more than {_MOST_MADE} entries", "write smaller ones"
+            raise self.source.error(message, at, repair, kind=BudgetExceeded)
         self._open("[", at)
         for i in range(rows):
             for j in range(columns):
@@ -473,9 +502,10 @@ class Tokeniser:
         """Return the symbol `name`; raises the error with the reason if there is none."""
         self._require_product(name, at)
         variable = self.scope.variable
-        is_free = name in EIGENVALUES and not self.scope.declares(name)
-        if is_free and variable and variable not in NAME.findall(self.text):
-            return self._symbol(variable, at, called=called)
+        if self.scope.polynomial and variable and name in EIGENVALUES and not self.scope.declares(name):
+            written = {"lam" if each == "lambda" else each for each in NAME.findall(ascii_names(self.text))}
+            if variable not in written and len(written & set(EIGENVALUES)) == 1:
+                return self._symbol(variable, at, called=called)
         if name == PI and (self.scope.functions or self.open):  # what it is an argument of takes it, or refuses it
             return Scalar.symbol(PI)
         reasons = refusal(name)
