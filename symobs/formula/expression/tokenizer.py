@@ -378,7 +378,7 @@ class Tokeniser:
             raise self.source.error(f'"{unit}" belongs behind a number', at, "write 30° or 5 %")
         before = self.tokens[-2].type if len(self.tokens) > 1 else ""
         follows = self.text[at + 1 :].lstrip()[:1]
-        is_angle = self.source.where.startswith("plant.equilibrium") or any(map(self._is_called, self.open))
+        is_angle = self.source.where.startswith("substitute.") or any(map(self._is_called, self.open))
         if unit == "°" and not is_angle:
             raise self.source.error("an angle in degrees stands where no angle is asked for", at, "write a number")
         if unit == "%" and (before in {"MULTIPLY", "POWER"} or follows.isalnum() or follows in {"(", "%"}):
