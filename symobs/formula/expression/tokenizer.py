@@ -369,6 +369,8 @@ class Tokeniser:
         if LEADING_ZERO.match(text) and (self.open or whole):
             message = f'a number does not begin with 0: "{text}"'
             instead = f"decimals have a point: {whole[1]}.{text}" if whole else f"write {text.lstrip('0') or '0'}"
+            if whole and len(text) == 3 and whole[1] != "0":
+                instead += f", or {whole[1]}{text} if the comma sets thousands apart"
             raise self.source.error(message, at, instead)
 
     def _unit(self, unit: str, at: int) -> None:
