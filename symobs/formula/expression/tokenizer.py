@@ -112,8 +112,9 @@ _ARGUMENTS = re.compile(r"\s*\(((?:[^()]|\((?:[^()]|\([^()]*\))*\))*)\)")
 #: An entry of diag, without commas outside of parentheses.
 _PART = re.compile(r"(?:[^(),\s]|\((?:[^()]|\([^()]*\))*\)|\s+(?=[-+*/^]\s)|(?<=[-+*/^])\s+)+")
 _SIZES, _MOST_SIZE = re.compile(r"[0-9]{1,3}(?:\s*,\s*[0-9]{1,3})?"), 30
-#: e^{-2t} and e^(-2t), where e is no name.
-_EXP = re.compile(r"\s*(?:\^|\*\*)(?=\s*[({])")
+#: e^{-2t} and e^(-2t), where e is no name and no second power follows.
+_GROUP = r"[({](?:[^(){}]|[({](?:[^(){}]|[({][^(){}]*[)}])*[)}])*[)}]"
+_EXP = re.compile(rf"\s{{0,9}}(?:\^|\*\*)(?=\s{{0,9}}{_GROUP}(?!\s{{0,9}}(?:\^|\*\*)))")
 #: The argument of sin ωt and cos 2t: a number and a name, and of a wave two where the second is the time; in brackets,
 #: where blanks set entries apart, one.  What follows leaves no doubt where the argument ends.
 _OTHER = rf"(?!(?:{'|'.join(FUNCTIONS)})\b){PRINTED_NAME}"
