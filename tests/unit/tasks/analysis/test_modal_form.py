@@ -47,3 +47,8 @@ def test_letters_of_the_input_make_no_further_condition() -> None:
     assert (found.verdict, found.conditions) == ("yes", ())
     positive = StateSpace("[-1 0; 0 -2]", "[b; 1]", "[1 1]", symbols={"b": "positive"})
     assert [*symobs.canonical_form(positive, kind="modal").B] == [1, 1]
+
+
+def test_several_inputs_have_no_ones() -> None:
+    found = symobs.canonical_form(StateSpace("[-1 0; 0 -2]", "[1 1; 1 2]", "[1 1]"), kind="modal")
+    assert (found.verdict, found.B.shape) == ("yes", (2, 2))
