@@ -105,7 +105,7 @@ class CanonicalForm(Result):
     def has_ones(self) -> bool:
         """Whether B̄ of a modal form has a 1 in each block and is 0 elsewhere."""
         blocks, B = self.answer["blocks"], self.answer["B"]
-        return bool(blocks) and B is not None and B == cyclic_vector(blocks, self.plant.variable)
+        return bool(blocks) and B is not None and cyclic_vector(blocks, self.plant.variable) == B
 
     def claims(self) -> Iterator[Claim]:
         """Yield the change of coordinates and the form; or that the rank is below n."""
