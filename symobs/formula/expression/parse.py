@@ -217,7 +217,7 @@ def parse_polynomial(
 _OF = r"{}[\w]{{0,20}}\s{{0,9}}\(\s{{0,9}}(?:s|z|p|lambda|lam|λ)\s{{0,9}}\)\s{{0,9}}"
 _QUOTIENT = rf"{_OF.format('[YXCZ]')}/\s{{0,9}}{_OF.format('[URFVW]')}"
 _FUNCTION_OF = re.compile(rf"\s{{0,9}}(?:(?:{_QUOTIENT}|{_OF.format('[^0-9]')})=\s{{0,9}})+(?!0\s{{0,9}}$)")
-_INPUT = re.compile(r"(?<=[)\d])\s*[*·]?\s*[UVRW]\(\s*[szp]\s*\)\s*$")
+_INPUT = re.compile(r"(?<=[)\d])\s{0,9}[*·]?\s{0,9}[UVRW]\(\s{0,9}[szp]\s{0,9}\)\s{0,9}$")
 
 
 def right_side(text: str) -> str:
