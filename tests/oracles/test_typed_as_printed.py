@@ -65,6 +65,7 @@ def test_a_problem_typed_as_printed_has_the_printed_answer(number: int) -> None:
         with pytest.raises(SymobsError, match=problem["refused"]):
             validate(file).solve()
         return
+    assert problem["answers"]
     found = {result.task: json.loads(result.to_json())["results"][0] for result in validate(file).solve()}
     for task, field, printed, form, _how in problem["answers"]:
         answer = {**found[task].get("decimals", {}), **{k: v for k, v in found[task].items() if v is not None}}
