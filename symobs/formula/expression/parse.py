@@ -133,7 +133,6 @@ def parse_poles(
     scope = Scope.of(names, None, where, functions=functions, rounding=rounding, roots=roots)
     scope = replace(scope, poles=True, letters=frozenset(letters))
     if isinstance(value, str):
-        value = _SET.sub(r"\1", without_latex(without_pole_names(value)))
         value = ",".join(str(one) for pole in _with_commas(value, where).split(",") for one in pairs(pole))
         scope = sharing(scope, [value], variable)
         return tuple(Complex.of(pole) for pole in _numbers_of_text(value, scope, where))
@@ -153,10 +152,6 @@ def parse_poles(
     if plain is not None and len(plain[0][0]) == len(listed):
         return tuple(map(Complex.of, plain[0][0]))
     return tuple(Complex.of(_entry(pole, scope, f"{where}[{index}]")) for index, pole in enumerate(listed))
-
-
-#: Poles as a set: {-1, -2}.
-_SET = re.compile(r"^\s*\{([^{}]*)\}\s*$")
 
 
 def comma_between_digits(value: object) -> str:
@@ -232,6 +227,8 @@ def right_side(text: str) -> str:
     return above if sign and right.strip() == "0" else text
 
 
+#: Poles as a set: {-1, -2}.
+_SET = re.compile(r"^\s*\{([^{}]*)\}\s*$")
 #: A pole by its name: s = …, λ1 = …, p_{1,2} = …
 _POLE_NAME = r"(?:lambda|lam|mu|[szpλμσ])(?:_?[0-9]{1,2}|_?\{[0-9, ]{1,20}\}|[₀-₉]{1,2})?"
 _NAMED_POLE = re.compile(rf"\s*((?:{_POLE_NAME}\s*=\s*)+)(.*)", re.DOTALL)
@@ -245,11 +242,12 @@ _LONGEST_LIST = 2_000
 
 
 def without_pole_names(text: str) -> str:
-    """Return the poles of "s = -1, -2", "λ1 = λ2 = -5", "p_{1,2} = -1 ± j" and "-5 (double)", one after the other."""
+    """Return the poles of "{-1, -2}", "s = -1, -2", "λ1 = λ2 = -5", "p_{1,2} = -1 ± j" and "-5 (double)" one by one."""
+    text = text if len(text) > _LONGEST_LIST else _SET.sub(r"\1", text)
     if ("=" not in text and "(" not in text) or len(text) > _LONGEST_LIST:
         return text
     found: list[str] = []
-    pieces = _COMMA_OUTSIDE.split(_SET.sub(r"\1", text))
+    pieces = _COMMA_OUTSIDE.split(text)
     for place, piece in enumerate(pieces):
         pole, count = piece, 1
         if named := _NAMED_POLE.fullmatch(pole):

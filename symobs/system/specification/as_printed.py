@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from symobs.formula.expression import without_latex, without_pole_names
+from symobs.formula.expression import right_side, without_latex, without_pole_names
 from symobs.ground.errors import InputError
 from symobs.system.reading import read_scalar
 from symobs.system.specification.keywords import CHOICES
@@ -67,6 +67,8 @@ def as_typed(name: str, kind: str, value: Any, plant: StateSpace | None) -> Any:
     match kind:
         case "Poles":
             return ", ".join(map(_without_unit, value.split(","))) if "=" in value else value
+        case "PolynomialText" | "TransferFunctionText":
+            return right_side(value)
         case "Intensity" | "MatrixText" | "GainText":
             return _of_letters(name, _without_left(name, value), kind, plant)
         case "SignalText" | "TimeFunctions":

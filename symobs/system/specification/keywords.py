@@ -30,7 +30,6 @@ from symobs.formula.expression import (
     parse_matrix,
     parse_poles,
     parse_polynomial,
-    right_side,
     without_comma,
 )
 from symobs.formula.expression.tokenizer import CONSTRUCTORS
@@ -366,7 +365,6 @@ def _factors_of_pairs(poles: tuple[Complex, ...], variable: str, where: str) -> 
 
 def _from_polynomial(value: object, plant: StateSpace, degree: int, where: str) -> DesiredPolynomial:
     variable = plant.variable
-    value = right_side(value) if isinstance(value, str) else value
     if is_pattern(value):
         key = where.rpartition(".")[2].replace("polynomial", "poles")
         message = f"an expression in {variable} is expected, but what poles are to do came"

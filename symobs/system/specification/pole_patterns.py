@@ -17,7 +17,6 @@ from symobs.exact.algebraic.real_algebraic import roots_of_scalar
 from symobs.exact.algebraic.rounded_decimals import is_in_kernel
 from symobs.exact.core.generators import PI, NotWritten, function, symbols_in
 from symobs.exact.time_functions.antiderivative import butterworth, butterworth_angles
-from symobs.formula.expression import without_pole_names
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.system.conditions import sign_of
@@ -71,7 +70,7 @@ class PolePattern:
 
 def is_pattern(value: object) -> bool:
     """Return whether poles are given by what they are to do."""
-    return isinstance(value, Mapping) or (isinstance(value, str) and "=" in without_pole_names(value))
+    return isinstance(value, Mapping) or (isinstance(value, str) and "=" in value)
 
 
 def named_parts(value: Any, where: str) -> dict[str, Any]:
