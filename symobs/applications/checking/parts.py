@@ -113,7 +113,7 @@ def part_of_task(name: str, views: Sequence[ResultInConvention]) -> tuple[str, s
 
 def field_called(result: Result, name: str) -> str:
     """Return the field that a page writes x(t), y(t) or exp(A t); another name as it is."""
-    return result.functions_of_time.get(re.sub(r"[\s*]", "", name), name)
+    return result.called.get(re.sub(r"[\s*]", "", name), name)
 
 
 def is_of_time(results: Iterable[Result], name: str) -> bool:

@@ -54,6 +54,11 @@ class TaskTraits(OutputMethods):
         return None
 
     @property
+    def called(self) -> Mapping[str, str]:
+        """The fields by what a page calls them, without spaces and signs of products."""
+        return self.functions_of_time
+
+    @property
     def named_data(self) -> Mapping[str, Any]:
         """The data and answers of the task by the letters of its equations, such as Q and R; they go before the plant's."""
         return {}

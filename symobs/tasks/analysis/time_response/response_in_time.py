@@ -139,6 +139,12 @@ class Response(DampingCases):
         moving, instant = self.answer["state" if self.answer["output"] is None else "output"], self.answer["at_time"]
         return None if instant is None or moving is None else substitute(moving, {self.clock: instant}).normal()
 
+    @property
+    def called(self) -> Mapping[str, str]:
+        """The functions of time, and the value at the instant: y(5)."""
+        letter, instant = "x" if self.answer["output"] is None else "y", self.answer["at_time"]
+        return super().called if instant is None else {**super().called, f"{letter}({instant})": "value"}
+
     def at_instant(self, e: Environment) -> Term:
         """Return y(T), or x(T)."""
         letter = f"{'x' if self.answer['output'] is None else 'y'}_{self.clock}"

@@ -12,6 +12,7 @@ from scipy.linalg import expm  # type: ignore[import-untyped]
 
 import symobs
 from symobs import StateSpace
+from symobs.applications.checking import Checked
 from symobs.formula.figures import TimeResponse
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.derivation.steps import Plot
@@ -78,6 +79,15 @@ def test_the_value_at_an_instant(plant: dict[str, Any], asked: dict[str, Any], i
     expected = np.array(plant.get("C", np.eye(order))) @ (moved @ begins)[:order]
     assert [complex(x).real for x in found.value] == pytest.approx(list(expected), rel=1e-10)
     assert said in text_of(found)
+
+
+def test_the_value_is_marked_by_its_name() -> None:
+    """x' = −x + 1 from 0: 1 − e^{−2} at 2."""
+    file = 'task = "response"\n[plant]\nA = "[-1]"\nB = "[1]"\nC = "[1]"\n[specification]\ninput = 1\nat_time = 2\n'
+    for value, verdict in (("1 - e^(-2)", "right"), ("1 - e^(-1)", "wrong")):
+        report = Checked.of(file).report(f"state = 1 - e^(-t)\ny(2) = {value}")
+        assert {part.part: part.verdict for part in report.parts}["response.value"] == verdict
+        assert [line for line in report.lines if line.verdict == "unreadable"] == []
 
 
 def test_the_value_in_a_case() -> None:
