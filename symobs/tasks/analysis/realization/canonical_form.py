@@ -291,17 +291,13 @@ def solve(plant: StateSpace, kind: str, method_name: str) -> CanonicalForm:
 
 
 def _with_ones(plant: StateSpace, S: Matrix, blocks: Blocks) -> Matrix:
-    """Return the basis in which B̄ of one input has a 1 in each block, where it is one wherever S is."""
-    A, B, signs = plant.matrices.A, plant.matrices.B, plant.symbols.signs
+    """Return the basis in which B̄ of one input has a 1 in each block, another one where the pair is not controllable."""
+    A, B = plant.matrices.A, plant.matrices.B
     if plant.inputs != 1 or len({factor for factor, _ in blocks}) < len(blocks):
         return S
     modal = modal_matrix(blocks, plant.variable)
     own, wanted = (power_rows(a.T, b.T).T for a, b in ((A, B), (modal, cyclic_vector(blocks, plant.variable))))
-    if not plant.simplified(own.determinant()):
-        return S
-    found = (own @ wanted.inverse()).normal()
-    zeros, further = (vanishing_factors((V.determinant(), V.common_denominator()), signs) for V in (S, found))
-    return found if set(further) <= set(zeros) else S
+    return (own @ wanted.inverse()).normal() if plant.simplified(own.determinant()) else S
 
 
 def _moved(plant: StateSpace, T: Matrix, S: Matrix) -> dict[str, Matrix]:
@@ -338,7 +334,7 @@ def canonical_form(
     plant    n states; one input for "controllable", one output for "observable"; only A for "modal"
     kind     controllable: ones above the diagonal, −aₙ … −a₁ in the last row, B̄ = eₙ; observable: its transpose, C̄ = eₙᵀ;
              modal: block diagonal and real, a block for each elementary divisor of A over Q(parameters), B̄ of one input
-             with a single 1 in each block where such coordinates are no less general;
+             with a single 1 in each block where the pair is controllable;
              controllable where neither kind nor T is given
     T        n×n with an inverse, in the place of a kind: the plant in the coordinates T x
     Returns T, A, B, C, D, polynomial.  Raises `InputError` where a matrix is missing or there are several inputs (outputs).

@@ -40,13 +40,14 @@ def test_a_block_that_the_input_does_not_reach_keeps_its_basis() -> None:
     assert "a single 1 in each block" not in " ".join(found.to("text").split())
 
 
-def test_letters_of_the_input_make_no_further_condition() -> None:
-    """Ones would divide by b, and the modal form is there for b = 0, too."""
+def test_letters_of_the_input_say_where_there_are_ones() -> None:
+    """Ones divide by b; where b = 0 the first mode is not reached, and keeps its basis."""
     plant = StateSpace("[-1 0; 0 -2]", "[b; 1]", "[1 1]", symbols={"b": "real"})
     found = symobs.canonical_form(plant, kind="modal")
-    assert (found.verdict, found.conditions) == ("yes", ())
-    positive = StateSpace("[-1 0; 0 -2]", "[b; 1]", "[1 1]", symbols={"b": "positive"})
-    assert [*symobs.canonical_form(positive, kind="modal").B] == [1, 1]
+    assert ([str(each) for each in found.conditions], [*found.B]) == (["Ne(b, 0)"], [1, 1])
+    (case,) = found.cases
+    assert [*case.result.B] == [0, 1]
+    assert found.T.subs("b", 3) == found.at(b=3).T
 
 
 def test_several_inputs_have_no_ones() -> None:
