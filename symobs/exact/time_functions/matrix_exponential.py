@@ -196,9 +196,17 @@ def modes_of(
 
 
 def exponential(
-    A: Matrix, variable: str, sign: Callable[[Scalar], str], *, sums: bool = False, start: Matrix | None = None
+    A: Matrix,
+    variable: str,
+    sign: Callable[[Scalar], str],
+    *,
+    sums: bool = False,
+    start: Matrix | None = None,
+    simplified: Callable[[Scalar], Scalar] | None = None,
 ) -> Exponential:
     """Return e^{At}, or e^{At} V for a matrix `start`, with `sums` over roots if need be.
+
+    Where parameters are related, `simplified` returns a value modulo their relations: so are the roots then.
 
     Raises `NoClosedForm` where it has none here, `OpenBranch` where a sign must be known first.
     """
@@ -208,7 +216,8 @@ def exponential(
         raise NoClosedForm(None, most)
     A, start = _over_its_field(A), Matrix.identity(order) if start is None else _over_its_field(start)
     width = start.shape[1]
-    found = modes_of(A.characteristic_polynomial(variable), variable, sign, sums=sums)
+    polynomial = A.characteristic_polynomial(variable)
+    found = modes_of(simplified(polynomial) if simplified else polynomial, variable, sign, sums=sums)
     places = [(mode, k) for mode, multiplicity in found for k in range(multiplicity)]
     D, begins = _rates(found)
     columns = [begins]

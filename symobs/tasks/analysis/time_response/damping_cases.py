@@ -146,7 +146,7 @@ class DampingCases(Result):
         taken: Signs = {}
         for delta, sign in self.answer["taken"].items():
             moved = delta.substitute(substitution)
-            if sign_of(moved, plant.symbols.signs) in _EXCLUDES[sign]:
+            if _sign_in(plant, moved) in _EXCLUDES[sign]:
                 message = f"{moved} is not {sign}"
                 raise ZeroDivisionError(message)
             taken[moved] = sign
@@ -286,17 +286,18 @@ def vanishing_denominators(values: Any, plant: StateSpace) -> tuple[Scalar, ...]
     return tuple(factor for factor in vanishing_factors(denominators, plant.symbols.signs) if is_of_data(factor))
 
 
+def _sign_in(plant: StateSpace, value: Scalar) -> str:
+    """Return the sign that a value has by the declared signs and by the relations between the parameters."""
+    return sign_of(plant.simplified(value), plant.symbols.signs)
+
+
 def with_signs(plant: StateSpace, taken: Signs, solve: Callable[[Callable[[Scalar], str]], Any]) -> tuple[Any, Signs]:
     """Return what `solve` finds, and the discriminants that had to be taken negative because their sign is open."""
     chosen: Signs = {}
 
     def sign(delta: Scalar) -> str:
-        found = sign_of(delta, plant.symbols.signs)
-        if found in {"positive", "negative"}:
-            return found
-        if plant.ideal is not None and plant.ideal.simplified(delta).is_zero:
-            return "zero"
-        return taken.get(delta) or chosen.get(delta) or "open"
+        found = _sign_in(plant, delta)
+        return found if found in {"positive", "negative", "zero"} else taken.get(delta) or chosen.get(delta) or "open"
 
     while True:
         try:
@@ -304,7 +305,7 @@ def with_signs(plant: StateSpace, taken: Signs, solve: Callable[[Callable[[Scala
         except OpenBranch as open_branch:
             if len(chosen) >= _MOST_BRANCHES:
                 raise
-            low = sign_of(open_branch.discriminant, plant.symbols.signs) == "nonnegative"
+            low = _sign_in(plant, open_branch.discriminant) == "nonnegative"
             chosen[open_branch.discriminant] = "positive" if low else "negative"
 
 

@@ -52,7 +52,11 @@ _SHOWN_SUM = 4
 
 def closed_form(plant: StateSpace, taken: Signs, *, sums: bool = False) -> tuple[Exponential, Signs]:
     """Return e^{At} and the signs that were chosen, with `sums` over roots if need be.  Raises `NoClosedForm`."""
-    return with_signs(plant, taken, lambda sign: exponential(plant.matrices.A, plant.variable, sign, sums=sums))
+    return with_signs(
+        plant,
+        taken,
+        lambda sign: exponential(plant.matrices.A, plant.variable, sign, sums=sums, simplified=plant.simplified),
+    )
 
 
 def has_sums(plant: StateSpace) -> bool:
@@ -63,7 +67,11 @@ def has_sums(plant: StateSpace) -> bool:
 def motion(plant: StateSpace, whole: Matrix, start: Matrix) -> Exponential:
     """Return e^{Mt} V for the matrix M of a larger system in which that of the plant stands.  Raises `NoClosedForm`."""
     found: Exponential
-    found, _ = with_signs(plant, {}, lambda sign: exponential(whole, plant.variable, sign, sums=True, start=start))
+    found, _ = with_signs(
+        plant,
+        {},
+        lambda sign: exponential(whole, plant.variable, sign, sums=True, start=start, simplified=plant.simplified),
+    )
     return found
 
 

@@ -48,3 +48,17 @@ def test_infinite_sums_with_parameters_have_their_page(A: str, C: str, verdict: 
     result = symobs.gramian(symobs.StateSpace(A, C=C, dt=True), horizon="inf")
     assert result.verdict == verdict
     assert result.to("text")
+
+
+def test_a_discriminant_is_a_number_where_the_parameters_are_related() -> None:
+    """a²b − ab² = 2 makes the roots 2 and −1, by hand: there is no square root there, and no case that oscillates."""
+    found = symobs.gramian(symobs.StateSpace("[0 a*b; a-b 1]", C="[1 a*b]"), horizon=1)
+    a, b, t = sympy.symbols("a b t")
+    (there,) = [case for case in found.cases if case.when == (sympy.Eq(a**2 * b - a * b**2 - 2, 0),)]
+    assert not there.result.matrix.atoms(sympy.cos, sympy.cosh)
+    assert not there.result.cases
+    A, C = sympy.Matrix([[0, 2], [1, 1]]), sympy.Matrix([[1, 2]])
+    y = C * (A * t).exp()
+    wanted = (y.T * y).applyfunc(lambda entry: sympy.integrate(sympy.expand(entry), (t, 0, 1)))
+    assert (there.result.matrix.subs({a: 2, b: 1}) - wanted).evalf().norm() < 1e-12
+    assert "is not decided" not in found.to("text")
