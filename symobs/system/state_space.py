@@ -164,6 +164,8 @@ class StateSpace:
 
     #: Whether irrational data were rounded.
     is_rounded = False
+    #: What is positive where the plant is: an equilibrium may be there for some parameters alone.
+    positive: tuple[Scalar, ...] = ()
 
     def __init__(
         self,
