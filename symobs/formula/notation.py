@@ -67,6 +67,10 @@ LETTERS: dict[str, LetterForm] = {
     "V_q": LetterForm("V", "V", "potential energy"),
     "Q_q": LetterForm("Q", "Q", "generalised forces"),
     "M_q": LetterForm("M", "M", "matrix of the highest derivatives in the equations of motion"),
+    **{
+        f"A_e{k}": LetterForm(rf"A_{k}", f"A{'₀₁₂₃₄₅₆₇₈₉'[k]}", "matrix of the linearisation at an equilibrium")
+        for k in range(1, 10)
+    },
     "partial": LetterForm(r"\partial", "∂", "sign of a partial derivative"),
     "K": LetterForm("K", "K", "state feedback gain"),
     "L": LetterForm("L", "L", "observer gain"),

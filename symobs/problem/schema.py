@@ -11,7 +11,7 @@ from symobs.problem.fields import ANY_TABLE, MARKING, TEXT, by_name, list_of, ta
 from symobs.problem.file_tables import Errors, nearest, report_unknown, table_of
 from symobs.system import StateSpace, Symbols, read_scalar
 from symobs.system.conditions import SIGNS
-from symobs.system.linearize import linearize
+from symobs.system.linearize import linearize, without_equilibrium
 from symobs.system.reading import read_time
 from symobs.system.specification import CHOICES, KINDS
 from symobs.system.transfer_function_text import REALISATIONS
@@ -264,9 +264,12 @@ def period_of(data: Mapping[str, Any], symbols: Symbols, errors: Errors) -> obje
 
 
 def plant_of(
-    data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, optional: bool
+    data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, optional: bool, moving: bool = False
 ) -> StateSpace | None:
-    """Return the plant, None where it cannot be had; where it is `optional` a polynomial does instead."""
+    """Return the plant, None where it cannot be had; where it is `optional` a polynomial does instead.
+
+    Where nothing but its equilibria is asked for, a nonlinear plant stays as it is, `moving`, without one.
+    """
     table = table_of(data, "plant", errors)
     if not isinstance(data.get("plant", {}), Mapping):
         return None
@@ -278,7 +281,7 @@ def plant_of(
         errors.note(f"both {forms[-1]} and {forms[0]} are given", "plant", "keep one of them")
     elif nonlinear:
         with errors:
-            return linearize(**nonlinear, dt=dt, symbols=symbols)
+            return (without_equilibrium if moving else linearize)(**nonlinear, dt=dt, symbols=symbols)
     elif "realisation" in table and "transfer_function" not in table:
         errors.note("there is nothing to realise", "plant.realisation", "it belongs to transfer_function: leave it out")
     elif "transfer_function" in table:

@@ -164,7 +164,12 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     symbols = with_constants(table_of(data, "constants", errors), symbols, errors)
     dt = period_of(data, symbols, errors)
     plant = plant_of(
-        data, symbols, dt, errors, optional=bool(wanted) and all(task.works_without_plant for task in wanted)
+        data,
+        symbols,
+        dt,
+        errors,
+        optional=bool(wanted) and all(task.works_without_plant for task in wanted),
+        moving={task.name for task in wanted} == {"equilibria"},
     )
     specification, own = _specification(data, (*asked, *wanted), convention, symbols, errors)
     kinds = _kinds((*asked, *wanted))

@@ -87,7 +87,7 @@ def linearize(
     Raises `InputError` where f does not vanish at that point or is not differentiable there, where there is no equilibrium
     or more than one, and for unknown names; `ShapeMismatch` where f has not a component for each state.
     """
-    typed = (f, equations, kinetic, coordinates)
+    typed = (f, equations, kinetic, potential)
     given, known = nonlinear_plant(
         f, h, states, inputs, coordinates, equations, kinetic, potential, forces, dt, symbols, equilibrium
     )
@@ -100,6 +100,35 @@ def linearize(
     plant = StateSpace(A, B, C, D, dt, symbols=known.naming(sorted(given.new_names), "plant.equilibrium"))
     plant.nonlinear, plant.is_in_decimals = given, has_decimals([*typed, h, equilibrium])
     plant.positive = given.positive
+    return plant
+
+
+def without_equilibrium(
+    f: object = None,
+    h: object = None,
+    *,
+    states: str | Sequence[Any] = "",
+    inputs: str | Sequence[Any] = (),
+    equilibrium: Mapping[Any, Any] | None = None,
+    coordinates: str | Sequence[Any] = "",
+    equations: str | Sequence[Any] | None = None,
+    kinetic: object = None,
+    potential: object = None,
+    forces: Mapping[str, Any] | None = None,
+    dt: object = 0,
+    symbols: Mapping[str, Any] | Symbols | None = None,
+) -> StateSpace:
+    """Return a nonlinear plant whose equilibria are asked for: there is no linearisation, and A is 0."""
+    given, known = nonlinear_plant(
+        f, h, states, inputs, coordinates, equations, kinetic, potential, forces, dt, symbols, equilibrium
+    )
+    names = given.states + given.inputs
+    signs = {**known.signs, **{name: known.sign(name) for name in names}}
+    point = _point({} if equilibrium is None else equilibrium, names, replace(known, signs=signs), given)
+    held = tuple((name, point[name]) for name in given.inputs if name in point)
+    plant = StateSpace(Matrix.zeros(len(given.states), len(given.states)), dt=dt, symbols=known)
+    plant.nonlinear = replace(given, held=held)
+    plant.is_in_decimals = has_decimals([f, equations, kinetic, potential, h, equilibrium])
     return plant
 
 
@@ -202,6 +231,7 @@ def at_equilibrium(
     names = given.states + given.inputs
     signs = {**symbols.signs, **{name: symbols.sign(name) for name in names}}
     point = _point({} if equilibrium is None else equilibrium, names, replace(symbols, signs=signs), given)
+    given = replace(given, held=tuple((name, point[name]) for name in given.inputs if name in point))
     if len(point) == len(names):
         above = real_where(point.values(), signs)
         return replace(given, equilibrium=tuple((name, point[name]) for name in names), positive=above), symbols

@@ -382,6 +382,8 @@ class Nonlinear:
     motion: Motion | None = None
     positive: tuple[Scalar, ...] = ()
     new_names: frozenset[str] = frozenset()
+    #: The values of inputs that are given: of the equilibria those are meant that have them.
+    held: tuple[tuple[str, Scalar], ...] = ()
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -410,7 +412,8 @@ class Nonlinear:
         f, h = substitute(self.f, values), None if self.h is None else substitute(self.h, values)
         motion = None if self.motion is None else self.motion.moved(values)
         positive = tuple(substitute(value, values) for value in self.positive)
-        return Nonlinear(f, h, self.states, self.inputs, point, motion, positive, self.new_names - {*values})
+        held = tuple((name, substitute(value, values)) for name, value in self.held)
+        return Nonlinear(f, h, self.states, self.inputs, point, motion, positive, self.new_names - {*values}, held)
 
 
 # The time domain as a type: `Continuous`, `TimeVarying` or `Discrete`.

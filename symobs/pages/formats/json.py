@@ -155,6 +155,7 @@ def _plant_object(plant: StateSpace) -> dict[str, Any]:
         present = {"A": True, "B": m.has_input, "C": m.has_output, "D": m.has_input and m.has_output}
         data = {name: to_json(getattr(m, name)) for name, is_there in present.items() if is_there}
     if (given := plant.nonlinear) is not None:
+        data = data if given.equilibrium else {}  # it is not linearised
         functions = {"f": to_json(given.f)} | ({} if given.h is None else {"h": to_json(given.h)})
         named = with_primes if given.motion is not None else str
         point = {named(name): str(value) for name, value in given.equilibrium}

@@ -22,6 +22,22 @@ if TYPE_CHECKING:
 _LONGEST = 8
 
 
+def state_nonlinear(page: Builder, given: Nonlinear, *further: Matrix | Scalar) -> None:
+    """State the equations of motion, and f and h; `further` values of the same functions may follow."""
+    if given.motion is not None:
+        state_motion(page, given.motion)
+    functions = [function for function in (given.f, given.h) if function is not None]
+    page.in_time(*functions, *further)
+    time = "discrete" if page.plant.is_discrete else "continuous"
+    states, arguments = SymbolList(given.states), SymbolList((*given.states, *given.inputs))
+    page.remark(f"nonlinear_{'state_' if given.h is None else ''}{time}", states=states, arguments=arguments)
+    page.assume_positive(_radicands(given, functions))
+    shown = [relation(page.set("f_x", given.f), given.f)]
+    if given.h is not None:
+        shown.append(relation(page.set("h_x", given.h), given.h))
+    page.given(*shown)
+
+
 def state_linearisation(page: Builder) -> None:
     """State f and h, hold f to its equilibrium, and derive A, B, C and D as partial derivatives there."""
     plant, given = page.plant, page.plant.nonlinear
@@ -32,18 +48,9 @@ def state_linearisation(page: Builder) -> None:
         given.jacobian(function, names) for function in functions for names in (given.states, given.inputs) if names
     ]
     moved = [_at_equilibrium(given, function) for function in (*functions, *jacobians)]
-    if given.motion is not None:
-        state_motion(page, given.motion)
-    page.in_time(*functions, *moved, *(value for _, value in given.equilibrium), m.A, m.B, m.C, m.D)
-    time = "discrete" if plant.is_discrete else "continuous"
-    states, arguments = SymbolList(given.states), SymbolList((*given.states, *given.inputs))
-    page.remark(f"nonlinear_{'state_' if given.h is None else ''}{time}", states=states, arguments=arguments)
-    page.assume_positive(_radicands(given, functions))
-    f = page.set("f_x", given.f)
-    shown = [relation(f, given.f)]
-    if given.h is not None:
-        shown.append(relation(page.set("h_x", given.h), given.h))
-    page.given(*shown)
+    state_nonlinear(page, given, *moved, *(value for _, value in given.equilibrium), m.A, m.B, m.C, m.D)
+    page.assume_positive(given.positive)
+    f, time = page["f_x"], "discrete" if plant.is_discrete else "continuous"
     rest = Matrix.of([[dict(given.equilibrium)[name] if plant.is_discrete else Scalar.of(0)] for name in given.states])
     at_rest = f.formula
     for name, there in given.equilibrium:
@@ -57,7 +64,7 @@ def state_linearisation(page: Builder) -> None:
                 continue
             jacobian = given.jacobian(function, names)
             page.set(matrix, value)
-            columns = _there(page, given, _columns(name, jacobian, names))
+            columns = _there(page, given, partial_derivatives(name, jacobian, names))
             is_told = jacobian != value and max(entry.size for entry in jacobian.entries) <= _LONGEST
             between = [_there(page, given, Literal(jacobian))] if is_told else []
             lines.append(relation(page[matrix], columns, *between, value))
@@ -77,7 +84,7 @@ def _radicands(given: Nonlinear, functions: Sequence[Matrix]) -> list[Scalar]:
     return [root.argument for root in found]
 
 
-def _columns(name: str, jacobian: Matrix, names: Sequence[str]) -> Formula:
+def partial_derivatives(name: str, jacobian: Matrix, names: Sequence[str]) -> Formula:
     """Return the row of the partial derivatives; one by what does not occur is written as 0."""
     columns = [Matrix.of([[entry] for entry in column]) for column in zip(*jacobian.rows, strict=True)]
     parts = [

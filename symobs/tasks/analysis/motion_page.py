@@ -37,7 +37,7 @@ def state_motion(page: Builder, motion: Motion) -> None:
     else:
         sides = (relation(left, right) for left, right in motion.sides)
         page.equal(*sides, say="equations_of_motion", coordinates=SymbolList(motion.coordinates))
-    if several:
+    if any(not M[i, j].is_zero for i in range(len(w.entries)) for j in range(len(w.entries)) if i != j):
         determinant = simplified(M.determinant())
         page.equal(relation(page["M_q"], M), relation(page("det(M_q)"), determinant), say="mass_determinant")
         page.remark("solved_for_highest", derivatives=SymbolList(motion.highest))
