@@ -253,6 +253,8 @@ def square_root(radicand: Scalar) -> Scalar:
 
     Raises ZeroDivisionError, as for any value that means nothing here, where the radicand is a negative number.
     """
+    if radicand.is_zero:
+        return ZERO
     unit, factors = radicand.factors()
     number = unit.fraction() if unit.is_constant else None
     if number is not None and number < 0 and all(power % 2 == 0 for _, power in factors):

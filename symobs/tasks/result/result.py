@@ -21,7 +21,7 @@ from symobs.ground.errors import CertificateRejected, DerivationRejected, Undeci
 from symobs.proof.certificate.claims import BEYOND_LIMITS, UNREADABLE, Certificate, Claim, Statement, check_all
 from symobs.proof.derivation import translated
 from symobs.proof.derivation.builder import Builder, relation, without_failing_cases
-from symobs.system.conditions import Condition, joined, nonzero, sign_of, vanishing_factors
+from symobs.system.conditions import Condition, joined, nonzero, vanishing_factors
 from symobs.tasks.result.output_methods import PLAIN, WebPage, detail_of, document_options, to_sympy
 from symobs.tasks.result.task_traits import TaskTraits
 from symobs.tasks.result.writers import render, writer_of
@@ -201,11 +201,7 @@ class Result(TaskTraits):
         divisors = [*_denominators([m.A, m.B, m.C, m.D]), *self.plant.apart]
         divisors += [] if self.plant.is_stratum else self.plant.nonzero
         divisors += _denominators(self.further_data)
-        signs = self.plant.symbols.signs
-        above = (
-            Condition("domain", value, ">") for value in self.plant.positive if sign_of(value, signs) != "positive"
-        )
-        return (*nonzero("domain", vanishing_factors(divisors, signs)), *above)
+        return (*nonzero("domain", vanishing_factors(divisors, self.plant.symbols.signs)), *self.plant.exists_where)
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:

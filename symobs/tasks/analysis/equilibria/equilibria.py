@@ -35,7 +35,6 @@ class Equilibria(Result):
     """Points with f = 0, which are all there are where the search left nothing open."""
 
     task: ClassVar[str] = "equilibria"
-    answered_by = ("points", "stable")
 
     @property
     def found(self) -> Found:
@@ -124,9 +123,9 @@ class Equilibria(Result):
         """Return ∂f/∂x at a point, None where f has no derivative that is written there."""
         try:
             value = self.jacobian.substitute(self._values(point))
+            rows = [[simplified(normal_form(by_signs(entry, self._signs))) for entry in row] for row in value.rows]
         except (ZeroDivisionError, NotWritten):
             return None
-        rows = [[simplified(normal_form(by_signs(entry, self._signs))) for entry in row] for row in value.rows]
         return Matrix.of(rows)
 
     def stability_at(self, point: Equilibrium) -> tuple[str, list[str]]:

@@ -18,9 +18,9 @@ PHRASES: dict[str, str] = {
     "rests_where_nonzero": "This is where {value} is not 0.",
     "rests_where_zero": "This is where {value} is 0.",
     "free_at_rest": "Here {names:list} may have any value.",
-    "is_at_rest_continuous": "There the states do not change,",
-    "is_at_rest_discrete": "There the states keep their values,",
-    "linearised_there": "and the linearisation has the matrix",
+    "is_at_rest_continuous": "There the states do not change:",
+    "is_at_rest_discrete": "There the states keep their values:",
+    "linearised_there": "The matrix of the linearisation there is",
 }
 
 #: What these sentences contain is held to f by the display that follows.
