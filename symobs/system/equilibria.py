@@ -197,8 +197,11 @@ class _Search:
         turned = [f.argument for factor in moving if (f := _alone(factor, {"sin"}))]
         found = [branch.without(equation, factor).under(*fixed) for factor in moving]
         return [
-            each if _alone(factor, {"sin"}) else replace(each, told=(*each.told, *turned))
-            for factor, each in zip(moving, found, strict=True)
+            *(
+                each if _alone(factor, {"sin"}) else replace(each, told=(*each.told, *turned))
+                for factor, each in zip(moving, found, strict=True)
+            ),
+            *(branch.without(equation).under((factor, "==")) for factor, _ in fixed),
         ]
 
     def _linearly(self, branch: _Branch, equation: Scalar) -> list[_Branch] | None:
@@ -208,8 +211,10 @@ class _Search:
                 continue
             lead, rest = equation.coefficients(name)
             if not self._unknown_in(lead):
-                apart = [] if never_zero(lead, self.signs) else [(lead, "!=")]
-                return [branch.without(equation).where(name, -rest / lead).under(*apart)]
+                there = branch.without(equation).where(name, -rest / lead)
+                if never_zero(lead, self.signs):
+                    return [there]
+                return [there.under((lead, "!=")), branch.without(equation, rest).under((lead, "=="))]
         return None
 
     def _by_quotient(self, branch: _Branch, equation: Scalar) -> list[_Branch] | None:

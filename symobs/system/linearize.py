@@ -99,7 +99,7 @@ def linearize(
     given, (A, B, C, D) = _linearised(given, known, is_discrete=is_discrete)
     plant = StateSpace(A, B, C, D, dt, symbols=known.naming(sorted(given.new_names), "plant.equilibrium"))
     plant.nonlinear, plant.is_in_decimals = given, has_decimals([*typed, h, equilibrium])
-    plant.positive = given.positive
+    plant.positive, plant.nonzero = given.positive, (*plant.nonzero, *given.nonzero)
     return plant
 
 
@@ -236,13 +236,16 @@ def at_equilibrium(
         above = real_where(point.values(), signs)
         return replace(given, equilibrium=tuple((name, point[name]) for name in names), positive=above), symbols
     found = all_equilibria(given, point, signs, is_discrete=is_discrete)
-    if len(found.points) != 1:
-        raise _not_one(found, given)
-    (there,) = found.points
+    generic = [point for point in found.points if not any(c.operator == "==" for c in point.conditions)]
+    if len(generic) != 1:
+        raise _not_one(replace(found, points=tuple(generic or found.points)), given)
+    (there,) = generic
+    apart = tuple(c.expression for c in there.conditions if c.operator == "!=")
     values = {**point, **there.values}
     conditions = (c.expression for c in there.conditions if c.operator in {">", ">="})
     above = tuple(dict.fromkeys((*conditions, *real_where(point.values(), signs))))
-    return replace(given, equilibrium=tuple((name, values[name]) for name in names), positive=above), symbols
+    point_there = tuple((name, values[name]) for name in names)
+    return replace(given, equilibrium=point_there, positive=above, nonzero=apart), symbols
 
 
 def all_equilibria(

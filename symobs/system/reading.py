@@ -370,8 +370,8 @@ def shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
 class Nonlinear:
     """A plant ẋ = f(x, u), y = h(x, u) (x(k+1) = f in discrete time) and an equilibrium of it, by name.
 
-    It comes from its equations of motion where there are any.  Where the equilibrium is there must be `positive` parameters;
-    what it leaves free is its own value, or has one of the `new_names` where the linearisation depends on it.
+    It comes from its equations of motion where there are any.  Where there is the equilibrium some values are `positive` and
+    others `nonzero`; what it leaves free is its own value, or has one of the `new_names` where the linearisation depends on it.
     """
 
     f: Matrix
@@ -381,6 +381,7 @@ class Nonlinear:
     equilibrium: tuple[tuple[str, Scalar], ...]
     motion: Motion | None = None
     positive: tuple[Scalar, ...] = ()
+    nonzero: tuple[Scalar, ...] = ()
     new_names: frozenset[str] = frozenset()
     #: The values of inputs that are given: of the equilibria those are meant that have them.
     held: tuple[tuple[str, Scalar], ...] = ()
@@ -413,7 +414,10 @@ class Nonlinear:
         motion = None if self.motion is None else self.motion.moved(values)
         positive = tuple(substitute(value, values) for value in self.positive)
         held = tuple((name, substitute(value, values)) for name, value in self.held)
-        return Nonlinear(f, h, self.states, self.inputs, point, motion, positive, self.new_names - {*values}, held)
+        nonzero = tuple(substitute(value, values) for value in self.nonzero)
+        return Nonlinear(
+            f, h, self.states, self.inputs, point, motion, positive, nonzero, self.new_names - {*values}, held
+        )
 
 
 # The time domain as a type: `Continuous`, `TimeVarying` or `Discrete`.
