@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Ideal, Matrix, Scalar
 from symobs.exact.core.generators import derivative, identities, symbols_in
-from symobs.formula.expression import parse_matrix, typed_name, without_latex
+from symobs.formula.expression import parse_scalar, typed_name, without_latex
 from symobs.formula.expression.names import PRINTED_NAME
 from symobs.formula.expression.source import shown
 from symobs.ground.dataclass import dataclass
@@ -274,7 +274,7 @@ def _expression(value: object, variables: Sequence[str], symbols: Symbols, where
     text = str(value) if is_sympy(value) or isinstance(value, (int, str)) else value
     if isinstance(text, str):
         text = typed_derivatives(text, variables, where)
-    return parse_matrix([[text]], symbols.names, where=where, functions=True, nonlinear=True)[0, 0]
+    return parse_scalar(text, symbols.names, where=where, functions=True, nonlinear=True)
 
 
 def _sides(value: object, variables: Sequence[str], symbols: Symbols, where: str) -> tuple[Scalar, Scalar]:

@@ -21,6 +21,7 @@ from symobs.system.reading import Nonlinear
 from symobs.tasks.analysis.linearisation_page import partial_derivatives, state_nonlinear
 from symobs.tasks.analysis.page_parts import say_stability, state_signs
 from symobs.tasks.result import Result, choose, method, task
+from symobs.tasks.result.output_methods import to_sympy
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -88,6 +89,12 @@ class Equilibria(Result):
         if not self.found.points:
             return "no"
         return "conditional" if all(point.conditions for point in self.found.points) else "yes"
+
+    @property
+    def conditions(self) -> tuple[Any, ...]:
+        """The conditions of each point as SymPy relations."""
+        found: tuple[Any, ...] = to_sympy([point.conditions for point in self.found.points], self.plant.symbols.objects)
+        return found
 
     @cached_property
     def fields(self) -> Mapping[str, Any]:
