@@ -108,7 +108,7 @@ class Margins(Result):
         if self.design is not None and own is not None:
             values["A_c"] = self.design.fields[own]
         if self.written is not None:
-            values |= {"B": m.B, "C": m.C, "D": m.D, "F": self.written.value, "q": _monic(self.written)[1]}
+            values |= {"B": m.B, "C": m.C, "D": m.D, "F": self.written.value, "q": monic(self.written)[1]}
         e = Environment(variable=plant.variable, values=values)
         whole = e["A"].pencil.apply("det")
         if self.design is not None:
@@ -275,22 +275,24 @@ def _plain(value: Any) -> Scalar:
     return found
 
 
-def _monic(controller: WrittenTransferFunction) -> tuple[Scalar, Scalar]:
+def monic(controller: WrittenTransferFunction) -> tuple[Scalar, Scalar]:
     """Return numerator and denominator, the lead of the denominator 1; nothing is cancelled."""
     lead = controller.below.coefficients(controller.variable)[0]
     return controller.above / lead, controller.below / lead
 
 
-def _loop_of_controller(plant: StateSpace, controller: WrittenTransferFunction) -> tuple[Scalar, Scalar]:
-    """Return P + N and P of F G; raises `InputError` where that is not strictly proper."""
+def loop_of_controller(
+    plant: StateSpace, controller: WrittenTransferFunction, *, proper: bool = False
+) -> tuple[Scalar, Scalar]:
+    """Return P + N and P of F G; raises `InputError` where that is not strictly proper, or with `proper` not proper."""
     m, where = plant.matrices, "specification.controller"
     if (plant.inputs, plant.outputs) != (1, 1):
         message = f"a loop with a controller has one input and one output, the plant {plant.inputs} and {plant.outputs}"
         raise InputError(message, where=where, repair="give a plant with one of each")
-    above, below = _monic(controller)
+    above, below = monic(controller)
     numerator, chi = transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable)
     opened, moved = chi * below, numerator * above
-    if not moved.is_zero and moved.degree(plant.variable) >= opened.degree(plant.variable):
+    if not moved.is_zero and moved.degree(plant.variable) >= opened.degree(plant.variable) + proper:
         raise _not_proper(where, "give a controller with a pole more")
     return opened + moved, opened
 
@@ -349,7 +351,7 @@ def margins(
         plant.require("B", "C", task="margins")
         plant = plant.in_digits()
         written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
-        found: Result = chosen.solve(plant, None, written, _loop_of_controller(plant, written))
+        found: Result = chosen.solve(plant, None, written, loop_of_controller(plant, written))
         return found.asked(method)
     design = in_digits(_design(plant.knowing(*asked.values()), asked, observer))
     loop = None if design.verdict == "no" else loop_of(design)
@@ -431,7 +433,7 @@ def _polynomials(page: Builder, result: Margins) -> None:
     else:
         assert result.written is not None  # noqa: S101 - the other way to a loop
         page.define("F", factored_form(page, result.written.value), say="margins_controller", closing=False)
-        below = _monic(result.written)[1]
+        below = monic(result.written)[1]
         opened = opened if below.is_one else opened @ page.value(below)
     place = "output" if kind == "observer" else "input"
     page.define("chi_o", opened, page.value(result.answer["opened"]), say=f"margins_cut_{place}", closing=False)
