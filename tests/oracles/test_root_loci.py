@@ -45,7 +45,7 @@ def symobs_number(text: Any) -> complex:
     """Return the number that an exact text stands for, by SymPy."""
     import sympy  # noqa: PLC0415 - only these tests pay for it
 
-    return complex(sympy.sympify(str(text)).evalf(30))
+    return complex(sympy.sympify(str(text)).evalf(30))  # noqa: TID251 - texts of our own
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -65,7 +65,7 @@ def test_multiple_roots_and_crossings_have_50_digits(seed: int) -> None:
     mpmath.mp.dps = 60
 
     def value(text: Any) -> Any:
-        return mpmath.mpmathify(str(sympy.N(sympy.sympify(str(text)), 55)).replace("*I", "j").replace(" ", ""))
+        return mpmath.mpmathify(str(sympy.N(sympy.sympify(str(text)), 55)).replace("*I", "j").replace(" ", ""))  # noqa: TID251 - texts of our own
 
     def at(s: Any, k: Any, *, slope: bool = False) -> Any:
         whole = [mpmath.mpf(a) + k * b for a, b in zip(p, [0] * (n - m) + q, strict=True)]

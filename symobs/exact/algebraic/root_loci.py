@@ -203,13 +203,13 @@ def crossings(p: Scalar, q: Scalar, variable: str) -> tuple[Crossing, ...]:
     inner = roots_of_scalar(im, "x") if "x" in im.names else []
     inside = [x for x in inner if x > ends[0] and (not discrete or x < ends[1])]
     for x in [*ends, *inside]:
-        k = _gain_on_boundary(x, re, square)
+        k = gain_on_boundary(x, re, square)
         if k is not None and k.sign > 0:
             found.append(Crossing(k, x, omega_of(x, discrete=discrete)))
     return tuple(sorted(found, key=lambda crossing: crossing.k))
 
 
-def _gain_on_boundary(x: RealNumber, re: Scalar, square: Scalar) -> RealNumber | None:
+def gain_on_boundary(x: RealNumber, re: Scalar, square: Scalar) -> RealNumber | None:
     """Return −Re(p q̄)/|q|² at x; None where q vanishes."""
     if x.sign_of(whole(square, "x")) == 0:
         return None

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Factored, Matrix, RealNumber, Scalar, transfer
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
+from symobs.exact.algebraic.nyquist import nyquist
 from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
 from symobs.formula.tree import Decimals, Environment
 from symobs.ground.dataclass import dataclass
@@ -136,6 +137,11 @@ class Margins(Result):
         return [[*numbers(self.answer[name], self.plant.variable)] for name in ("closed", "opened")]
 
     @property
+    def _is_rational(self) -> bool:
+        entries = (c for name in ("closed", "opened") for c in self.answer[name].coefficients(self.plant.variable))
+        return all(entry.is_constant for entry in entries)
+
+    @property
     def _slowest(self) -> RealNumber:
         return slowest_root(self._coefficients[0], discrete=self.plant.is_discrete)
 
@@ -171,6 +177,8 @@ class Margins(Result):
         """The margins: ends and slowest exactly, the others as decimals in texts; and the polynomials."""
         found: dict[str, Any] = {name: _written(self.answer[name]) for name in MARGINS}
         found |= {"closed_loop_polynomial": self.answer["closed"], "open_loop_polynomial": self.answer["opened"]}
+        if self.answer["closed"] is not None and self._is_rational:
+            found |= nyquist(self.answer["closed"], self.answer["opened"], self.plant.variable)
         return found | ({"question": self.answer["open"]} if self.answer["open"] else {})
 
     def __getattr__(self, name: str) -> Any:
@@ -336,6 +344,8 @@ def margins(
     Returns gain_down and gain_up, the ends of the interval around 1 of the gains that keep the loop stable, and slowest, the
     largest real part (modulus) of its poles, exactly; phase_deg, the smallest change of phase either way that does not,
     modulus, the smallest distance from −1, and peak, the largest |1/(1 + loop)|, to six certain digits after the point.
+    Where it is unstable, too: open_loop_unstable, encirclements (of −1, counterclockwise) and closed_loop_unstable,
+    axis_crossings (omega, value), gain_crossover, phase_crossover, and delay_margin, the least φ/ω.
     The verdict is `no` where the closed loop is not stable, `undecided` with symbols.  Raises `InputError` for several
     inputs or outputs, and for a loop with a gain at infinity.
     Source: S. Skogestad and I. Postlethwaite, Multivariable Feedback Control, 2nd ed., ch. 2.
