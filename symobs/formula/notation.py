@@ -58,8 +58,7 @@ LETTERS: dict[str, LetterForm] = {
     "f_x": LetterForm("f", "f", "rate of change of the states"),
     "h_x": LetterForm("h", "h", "output as a function of the states"),
     "lagrange": LetterForm(
-        r"\frac{\mathrm d}{\mathrm dt}\frac{\partial T}{\partial\dot q}-\frac{\partial T}{\partial q}"
-        r"+\frac{\partial V}{\partial q}=Q",
+        r"\mathrm d/\mathrm dt(\partial T/\partial\dot q)-\partial T/\partial q+\partial V/\partial q=Q",
         "d/dt(∂T/∂q̇) - ∂T/∂q + ∂V/∂q = Q",
         "Lagrange's equation",
     ),

@@ -355,7 +355,7 @@ def of_one_task(data: Mapping[str, Any], task: str) -> dict[str, Any]:
             for name, value in found["specification"].items()
             if name in own or not any(name in of for of in others)
         }
-    if "f" in _table(found, "plant"):
+    if {"f", "equations", "kinetic"} & _table(found, "plant").keys():
         found["plant"] = _linearised(found)
     return {name: value for name, value in found.items() if name != "constants"}
 

@@ -584,7 +584,7 @@ def test_the_sentence_of_every_task_is_german_on_a_german_page(task: str) -> Non
     assert german["status"] == english["status"] != "bad"
     assert german["says"][0].isupper()
     assert german["says"] != english["says"]
-    assert german["cards"] or task in {"lyapunov", "margins"}
+    assert german["cards"] or task in {"equilibria", "lyapunov", "margins", "root_locus"}  # no matrix answers them
 
 
 @tabled
