@@ -64,7 +64,7 @@ def write_region(page: Builder, result: StabilityRegion) -> None:
             _conditions(page, result, moved)
 
 
-def write_line(page: Builder, result: StabilityRegion, chi: str) -> None:
+def write_line(page: Builder, result: StabilityRegion, chi: str, *, with_pictures: bool = True) -> None:
     """Write where a polynomial is stable as one parameter moves, without Routh's table where there are no other symbols."""
     if result.region is None:
         _table(page, result, chi)
@@ -72,7 +72,7 @@ def write_line(page: Builder, result: StabilityRegion, chi: str) -> None:
         return
     if result.critical.proper:
         _crossing(page, result, chi)
-    _region(page, result, chi, chi)
+    _region(page, result, chi, chi, with_pictures=with_pictures)
 
 
 def _say_open_loop(page: Builder, result: StabilityRegion) -> None:
@@ -257,7 +257,7 @@ def _case(page: Builder, case: Case, chi: str) -> Step:
     return CaseStep(when, tuple(case.substitution.items()), steps)
 
 
-def _region(page: Builder, result: StabilityRegion, written: str, chi: str) -> None:
+def _region(page: Builder, result: StabilityRegion, written: str, chi: str, *, with_pictures: bool = True) -> None:
     """Show the inequalities, the region in words and parts, and the pictures, below the inequalities where there are any."""
     region = result.region
     assert region is not None  # noqa: S101 - there is one here
@@ -273,7 +273,8 @@ def _region(page: Builder, result: StabilityRegion, written: str, chi: str) -> N
     if relations:
         fact = HoldsExactlyWhere(predicate("stable", page[chi]), relations)
         page.steps.append(Inequalities(fact, sentence("region_is", {}), answer=True))
-        _pictures(page, result, written, chi)
+        if with_pictures:
+            _pictures(page, result, written, chi)
     parts = _parts(result, region)
     others = tuple(finding for finding in found if finding not in decided and finding.key not in NUMBERS)
     if others or parts:
@@ -282,7 +283,7 @@ def _region(page: Builder, result: StabilityRegion, written: str, chi: str) -> N
         page.steps.append(RegionSummary(page[chi].formula, names, others, parts, say))
         if numbers:
             page.steps.append(RegionSummary(page[chi].formula, names, numbers))
-    if not relations:
+    if not relations and with_pictures:
         _pictures(page, result, written, chi)
 
 
