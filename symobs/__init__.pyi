@@ -31,6 +31,7 @@ from symobs.ground.errors import UsageError as UsageError
 from symobs.live import live as live
 from symobs.system import StateSpace as StateSpace
 from symobs.system.linearize import linearize as linearize
+from symobs.tasks.analysis.equilibria.equilibria import Equilibria as _Equilibria
 from symobs.tasks.analysis.lyapunov.lyapunov import LyapunovSolution as _LyapunovSolution
 from symobs.tasks.analysis.modes.detectability import Detectability as _Detectability
 from symobs.tasks.analysis.modes.detectability import Stabilizability as _Stabilizability
@@ -69,7 +70,7 @@ from symobs.tasks.design.root_locus.root_locus import RootLocus as _RootLocus
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
 _IsPlant: TypeAlias = _CanonicalFormResult | _DecompositionResult | _DualResult | _ZeroOrderHoldResult
-_Plant: TypeAlias = StateSpace | _IsPlant | tuple[Sequence[_Number], Sequence[_Number]]
+_Plant: TypeAlias = StateSpace | _IsPlant | tuple[Sequence[_Number], Sequence[_Number]] | Mapping[str, Any]
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
@@ -332,6 +333,26 @@ def dual(
     floats: str | None = None,
 ) -> _DualResult:
     """Return the dual plant (± Aᵀ, Cᵀ, Bᵀ, Dᵀ) and the ranks that are equal by duality."""
+
+class _EquilibriaResult(_Equilibria):
+    """What `equilibria` returns."""
+
+    @property
+    def points(self) -> tuple[Any, ...]: ...
+    @property
+    def stable(self) -> tuple[str, ...]: ...
+    @property
+    def stable_if(self) -> tuple[Any, ...]: ...
+    @property
+    def complete(self) -> bool: ...
+
+def equilibria(
+    plant: _Plant,
+    *,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _EquilibriaResult:
+    """Return all x, u with f(x, u) = 0 (f(x, u) = x in discrete time), and whether the linearisation at each is stable."""
 
 class _FeedforwardResult(_FeedforwardDesign):
     """What `feedforward` returns."""
