@@ -16,7 +16,8 @@ from symobs.stability.regions.description import are_whole, is_written, relation
 from symobs.stability.regions.region import LineRegion, PlaneRegion
 from symobs.system.conditions import sign_of
 from symobs.system.transfer_function_text import WrittenTransferFunction
-from symobs.tasks.analysis.page_parts import WRITTEN_UP_TO, determinant_form, given, state_signs
+from symobs.tasks.analysis.page_parts import WRITTEN_UP_TO, determinant_form, factored_form, given, state_signs
+from symobs.tasks.analysis.stability_region.loop_polynomials import loop_polynomials, monic
 from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion, solved
 from symobs.tasks.result import page_of
 
@@ -77,8 +78,9 @@ def write_line(page: Builder, result: StabilityRegion, chi: str, *, with_picture
 
 def _say_open_loop(page: Builder, result: StabilityRegion) -> None:
     """Say how a loop is asked for where parameters stand in the numerator of a transfer function alone."""
-    written, chi = result.plant.written, result.answer["polynomial"]
-    if not isinstance(written, WrittenTransferFunction) or {result.question.K, result.question.L} != {None}:
+    written, chi, asked = result.plant.written, result.answer["polynomial"], result.question
+    is_closed = {asked.K, asked.L, asked.controller} != {None}
+    if is_closed or not isinstance(written, WrittenTransferFunction):
         return
     if chi.names <= {page.plant.variable} and not written.above.names <= {page.plant.variable}:
         page.remark("open_loop_asked", polynomial=str(written.above + written.below))
@@ -88,6 +90,8 @@ def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
     """Establish the gains and the characteristic polynomial; return its letter."""
     question = result.question
     chi: Scalar = result.answer["polynomial"]
+    if question.controller is not None:
+        return write_loop(page, question.controller, chi)
     for name, gain in (("K", question.K), ("L", question.L)):
         if gain is not None:
             page.define(name, gain, say="gain_open", closing=False)
@@ -103,6 +107,21 @@ def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
     if len(used) == 1:
         return next(iter(used))
     page.define("chi_cl", "chi_K chi_L", say="polynomial_of_loop", closing=False)
+    return "chi_cl"
+
+
+def write_loop(page: Builder, controller: WrittenTransferFunction, closed: Scalar) -> str:
+    """Write the polynomials of the loop with a controller; return the letter of that of the closed loop."""
+    plant, below = page.plant, monic(controller)[1]
+    page.define("F", factored_form(page, controller.value), say="margins_controller", closing=False)
+    opened = page["det(pencil(A))"]
+    opened = opened if below.is_one else opened @ page.value(below)
+    value = loop_polynomials(plant, controller)[0]
+    page.define("chi_o", opened, page.value(value), say="margins_cut_input", closing=False)
+    response = page["C pencil(A)^-1 B"]
+    response = response + page["D"] if plant.matrices.has_feedthrough else response
+    closing = page("chi_o (1 + F {response})", response=response)
+    page.define("chi_cl", closing, page.value(closed), say="margins_closed", closing=False)
     return "chi_cl"
 
 

@@ -30,9 +30,10 @@ from symobs.stability.plots import range_around
 from symobs.stability.plots import root_locus as paths_of_roots
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import factored_form, given
+from symobs.tasks.analysis.stability_region.loop_polynomials import monic
 from symobs.tasks.analysis.stability_region.stability_region import stability_region
 from symobs.tasks.analysis.stability_region.stability_region_page import write_line
-from symobs.tasks.design.margins.margins import loop_of_controller, monic
+from symobs.tasks.design.margins.margins import loop_of_controller
 from symobs.tasks.result import Result, choose, holds, method, page_of, task
 
 if TYPE_CHECKING:
