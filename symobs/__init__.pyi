@@ -937,6 +937,7 @@ def stability_region(
     polynomial: str | Expr | None = None,
     K: _Matrix | None = None,
     L: _Matrix | None = None,
+    controller: _Number | None = None,
     parameters: str | Sequence[str] | None = None,
     margin: _Number | None = None,
     radius: _Number | None = None,

@@ -94,6 +94,8 @@ class PoleMap:
     margin: Fraction | None = None
     radius: Fraction | None = None
     along: tuple[tuple[Fraction, ...], ...] = ()
+    #: The zeros of the loop, to which the roots go as the parameter grows: the rings are there instead of at the ends.
+    zeros: tuple[Place, ...] | None = None
     drawn_for: tuple[tuple[str, Scalar], ...] = ()
 
 

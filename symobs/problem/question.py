@@ -318,7 +318,8 @@ def _free_parameters(problem: Problem) -> tuple[str, ...]:
 
     asked = problem.specification_of(next(task for task in problem.tasks if task.name == "stability_region"))
     gains = {"K": asked.get("K"), "L": asked.get("L")}
-    return read_question(problem.plant, gains, None, asked.get("margin"), asked.get("radius")).parameters
+    limits = asked.get("margin"), asked.get("radius")
+    return read_question(problem.plant, gains, None, *limits, asked.get("controller")).parameters
 
 
 def _read(value: object, kind: str, name: str, plant: StateSpace, task: str) -> Any:

@@ -39,7 +39,7 @@ from symobs.ground.errors import InputError, NotShown
 from symobs.problem.expect import conditions_agree
 from symobs.stability.criteria.critical_polynomials import irreducible
 from symobs.stability.regions.region import LineRegion, PlaneRegion
-from symobs.tasks.analysis.stability_region.stability_region import RegionQuestion, StabilityRegion
+from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -561,7 +561,7 @@ def _slips(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:
 def _within(result: StabilityRegion, boundary: StabilityBoundary) -> StabilityRegion:
     """Return the region of the same question with another boundary."""
     asked = result.question
-    return StabilityRegion.of(RegionQuestion(asked.plant, asked.K, asked.L, asked.parameters, boundary), result.method)
+    return StabilityRegion.of(replace(asked, boundary=boundary), result.method)
 
 
 def _slips_of_one(result: StabilityRegion, union: Union) -> Iterator[tuple[str, str]]:

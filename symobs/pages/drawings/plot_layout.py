@@ -248,8 +248,10 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
         runs = frame.lines(path)
         strokes += [Stroke(run, "path") for run in runs]
         signs += [arrow for run in runs for arrow in _arrows(run)]
-        ends = ((kind, frame.at(*place)) for kind, place in (("cross", path[0]), ("ring", path[-1])))
-        signs += [Sign(kind, place) for kind, place in ends if frame.box.holds(Rectangle(*place, *place))]
+    rings = [path[-1] for path in picture.paths] if picture.zeros is None else picture.zeros
+    ends = (*(("cross", path[0]) for path in picture.paths), *(("ring", place) for place in rings))
+    placed = ((kind, frame.at(*place)) for kind, place in ends)
+    signs += [Sign(kind, place) for kind, place in placed if frame.box.holds(Rectangle(*place, *place))]
     whole = whole_of(strokes, texts, measure)
     return Scene(frame.box, whole, tuple(frame.areas(stable)), tuple(strokes), (), tuple(signs), tuple(texts))
 

@@ -109,7 +109,8 @@ def _poles(picture: PoleMap, printer: TextPrinter) -> str:
             _put(grid, picture.window, place, "*")
     for path in picture.paths:
         _put(grid, picture.window, path[0], "x")
-        _put(grid, picture.window, path[-1], "o")
+    for place in [path[-1] for path in picture.paths] if picture.zeros is None else picture.zeros:
+        _put(grid, picture.window, place, "o")
     return _framed(grid, picture.window, [part("Re"), part("Im")], printer)
 
 

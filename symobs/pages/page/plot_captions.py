@@ -91,7 +91,8 @@ def _sentences(picture: Drawn) -> Iterator[Sentence]:
             yield caption_sentence(f"line{_length(picture)}", parameter=symbol(axis))
             yield from (caption_sentence(kind) for kind in _kinds(kind for _, kind in picture.marks))
         case PoleMap(moved=moved, values=(begin, end)):
-            yield caption_sentence("poles", parameter=symbol(moved), begin=number(begin), end=number(end))
+            key = "poles" if picture.zeros is None else "locus"
+            yield caption_sentence(key, parameter=symbol(moved), begin=number(begin), end=number(end))
             if picture.discrete:
                 yield caption_sentence("disc", radius=number(radius_of(picture)))
             else:

@@ -61,6 +61,13 @@ def faults_of_poles(picture: PoleMap, polynomial: Scalar, variable: str, *, disc
                 yield f"{written(place)} is a pole at {picture.moved} = {value}"
     if not any(_are_all(picture, polynomial, variable, at) for at in _common(picture)):
         yield "these are all poles"
+    if picture.zeros is not None:
+        lead, *_ = polynomial.coefficients(picture.moved)
+        if begin or len(picture.zeros) != max(lead.degree(variable), 0):
+            yield f"there are {len(picture.zeros)} zeros"
+        for place in picture.zeros:
+            if not is_pole(lead, picture.moved, begin, place, variable, near):
+                yield f"{written(place)} is a zero"
 
 
 def is_pole(polynomial: Scalar, moved: str, value: Fraction, place: Place, variable: str, near: Fraction) -> bool:

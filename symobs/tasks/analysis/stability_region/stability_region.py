@@ -25,7 +25,9 @@ from symobs.stability.regions.region import LineRegion, PlaneRegion, RegionInequ
 from symobs.stability.regions.region_check import are_parts, is_region
 from symobs.system import StateSpace, Symbols, read_scalar
 from symobs.system.conditions import Condition, sign_of
-from symobs.system.specification import read_gain, read_names
+from symobs.system.specification import read_gain, read_names, reject_both
+from symobs.system.transfer_function_text import read_transfer_function
+from symobs.tasks.analysis.stability_region.loop_polynomials import loop_polynomials, monic
 from symobs.tasks.result import Case, Result, choose, holds, method, task
 
 if TYPE_CHECKING:
@@ -38,7 +40,8 @@ if TYPE_CHECKING:
     from symobs.stability.inequalities.simplify import Simplified
     from symobs.stability.regions.description import CylindricalPart, Edge
     from symobs.stability.regions.region import IntervalPiece
-    from symobs.system.specification import GainText, Name, Names, PolynomialText, Quantity
+    from symobs.system.specification import GainText, Name, Names, PolynomialText, Quantity, TransferFunctionText
+    from symobs.system.transfer_function_text import WrittenTransferFunction
 
 
 # The fields of a stability region: exact texts, decimals beside.
@@ -206,13 +209,20 @@ class RegionQuestion:
     L: Matrix | None
     parameters: tuple[str, ...]
     boundary: StabilityBoundary
+    controller: WrittenTransferFunction | None = None
 
     @cached_property
     def polynomial(self) -> Scalar:
-        """χ: the polynomial itself, or det(sI − A), det(sI − A + BK), det(sI − A + LC), or the product of the last two."""
+        """χ: the polynomial itself, or det(sI − A), det(sI − A + BK), det(sI − A + LC), or the product of the last two.
+
+        With a controller F it is the numerator of 1 + F(s)G(s), without any cancelling.
+        """
         m, variable = self.plant.matrices, self.plant.variable
         if self.plant.polynomial is not None:
             return self.plant.polynomial
+        if self.controller is not None:
+            opened, added = loop_polynomials(self.plant, self.controller)
+            return opened + added
         moved = [m.A - m.B @ self.K] if self.K is not None else []
         moved += [m.A - self.L @ m.C] if self.L is not None else []
         found = Scalar.of(1)
@@ -244,9 +254,15 @@ class RegionQuestion:
 
 
 def read_question(
-    plant: StateSpace, gains: dict[str, object], parameters: object, margin: object, radius: object
+    plant: StateSpace,
+    gains: dict[str, object],
+    parameters: object,
+    margin: object,
+    radius: object,
+    controller: object = None,
 ) -> RegionQuestion:
     """Return the question; raises `InputError` where its parts do not fit together."""
+    loop = _read_controller(plant := plant.knowing(controller), controller, gains) if controller is not None else None
     if plant.polynomial is not None and any(gain is not None for gain in gains.values()):
         name = next(name for name, gain in gains.items() if gain is not None)
         message = f"both a polynomial and the gain {name} are given"
@@ -262,7 +278,7 @@ def read_question(
         plant.require("C", task="the gain L")
         found["L"] = read_gain(gains["L"], plant, "L", (plant.order, plant.outputs))
     boundary = _boundary(plant, margin, radius)
-    asked = RegionQuestion(plant, found["K"], found["L"], (), boundary)
+    asked = RegionQuestion(plant, found["K"], found["L"], (), boundary, loop)
     roots = (asked.polynomial.field | boundary.margin.field | boundary.radius.field).numbers.names
     if roots:
         message = f"the data contain {roots[0]}, and regions are found for polynomials with rational coefficients"
@@ -285,6 +301,7 @@ def read_question(
         _require_occurring(chosen, asked, plant)
     else:
         gained = {name for gain in found.values() if gain is not None for name in gain.names}
+        gained |= loop.value.names - {*plant.matrices.symbols, plant.variable} if loop is not None else set()
         chosen = _free((gained or set(names)) - boundary.names or set(names), plant)
     shared = boundary.names.intersection(chosen)
     if shared:
@@ -293,13 +310,26 @@ def read_question(
         raise InputError(
             message, where=f"specification.{name}", repair="write another name, or leave it out of parameters"
         )
-    return RegionQuestion(plant, found["K"], found["L"], chosen, boundary)
+    return RegionQuestion(plant, found["K"], found["L"], chosen, boundary, loop)
+
+
+def _read_controller(plant: StateSpace, controller: object, gains: Mapping[str, object]) -> WrittenTransferFunction:
+    """Return the controller of a loop of one plant; raises `InputError` where a gain or a polynomial is given, too."""
+    where = "specification.controller"
+    if plant.polynomial is not None:
+        repair = "keep one of them; a controller needs a plant"
+        raise InputError("both a polynomial and a controller are given", where=where, repair=repair)
+    for name, gain in gains.items():
+        reject_both("controller", controller, gain, None, other=name)
+    plant.require("B", "C", task="the controller")
+    return read_transfer_function(controller, plant.symbols, plant.variable, where)
 
 
 def _require_occurring(chosen: tuple[str, ...], asked: RegionQuestion, plant: StateSpace) -> None:
     """Raise `InputError` for a parameter that is neither declared nor in the data, unless they have no symbol at all."""
     data = set(plant.matrices.symbols) if plant.polynomial is None else plant.polynomial.names
     names = data.union(*(gain.names for gain in (asked.K, asked.L) if gain is not None)) - {plant.variable}
+    names |= set() if asked.controller is None else asked.controller.value.names - {plant.variable}
     declared = set(plant.symbols.signs) - plant.symbols.named
     absent = [name for name in chosen if name not in names | declared | asked.boundary.names]
     if names and absent:
@@ -427,8 +457,12 @@ class StabilityRegion(Result):
         values: dict[str, Any] = {"A": m.A, "chi": chi}
         values |= {"K": question.K, "B": m.B} if question.K is not None else {}
         values |= {"L": question.L, "C": m.C} if question.L is not None else {}
+        if (written := question.controller) is not None:
+            values |= {"B": m.B, "C": m.C, "D": m.D, "F": written.value, "f": monic(written)[1]}
         e = Environment(variable=plant.variable, values=values)
         pencil = e["A"].pencil
+        if written is not None:
+            return holds(e, "{whole} f (I + F (C pencil(A)^-1 B + D)) = chi I", whole=pencil.apply("det"))
         moved = [pencil + e["B"] @ e["K"]] if question.K is not None else []
         moved += [pencil + e["L"] @ e["C"]] if question.L is not None else []
         product = (moved or [pencil])[0].apply("det")
@@ -582,6 +616,7 @@ def stability_region(
     polynomial: PolynomialText = None,
     K: GainText = None,
     L: GainText = None,
+    controller: TransferFunctionText = None,
     parameters: Names = None,
     margin: Quantity = None,
     radius: Quantity = None,
@@ -593,6 +628,7 @@ def stability_region(
     symbols, dt    for a polynomial: the signs of its symbols, and dt as for a plant (0 continuous: s, else z)
     polynomial     the polynomial, instead of a plant
     K, L           gains with free entries, "[h1; h2]": χ(s) = det(sI − A + BK), det(sI − A + LC), or their product
+    controller     F(s) with free letters, "k" or "Kp + Ki/s + Kd*s": χ(s) is the numerator of 1 + F(s)G(s), nothing cancelled
     parameters     the names to find the region of; else the free names of the gains, else those without a sign
     margin         α ≥ 0: all roots in Re s < −α           radius   0 < ρ ≤ 1, discrete time: all roots in |z| < ρ
     Returns polynomial, routh_table, stable_if; for one parameter intervals, for two cells, components, excluded_points;
@@ -609,5 +645,5 @@ def stability_region(
     else:
         known = Symbols.of(symbols).naming(parameters, where)
         asked = StateSpace.from_polynomial(plant if polynomial is None else polynomial, dt, symbols=known)
-    question = read_question(asked.in_digits(), {"K": K, "L": L}, parameters, margin, radius)
+    question = read_question(asked.in_digits(), {"K": K, "L": L}, parameters, margin, radius, controller)
     return choose("stability_region", method, "routh").solve(question).asked(method)

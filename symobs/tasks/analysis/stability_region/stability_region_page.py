@@ -16,7 +16,8 @@ from symobs.stability.regions.description import are_whole, is_written, relation
 from symobs.stability.regions.region import LineRegion, PlaneRegion
 from symobs.system.conditions import sign_of
 from symobs.system.transfer_function_text import WrittenTransferFunction
-from symobs.tasks.analysis.page_parts import WRITTEN_UP_TO, determinant_form, given, state_signs
+from symobs.tasks.analysis.page_parts import WRITTEN_UP_TO, determinant_form, factored_form, given, state_signs
+from symobs.tasks.analysis.stability_region.loop_polynomials import loop_polynomials, monic
 from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion, solved
 from symobs.tasks.result import page_of
 
@@ -64,7 +65,7 @@ def write_region(page: Builder, result: StabilityRegion) -> None:
             _conditions(page, result, moved)
 
 
-def write_line(page: Builder, result: StabilityRegion, chi: str) -> None:
+def write_line(page: Builder, result: StabilityRegion, chi: str, *, with_pictures: bool = True) -> None:
     """Write where a polynomial is stable as one parameter moves, without Routh's table where there are no other symbols."""
     if result.region is None:
         _table(page, result, chi)
@@ -72,13 +73,14 @@ def write_line(page: Builder, result: StabilityRegion, chi: str) -> None:
         return
     if result.critical.proper:
         _crossing(page, result, chi)
-    _region(page, result, chi, chi)
+    _region(page, result, chi, chi, with_pictures=with_pictures)
 
 
 def _say_open_loop(page: Builder, result: StabilityRegion) -> None:
     """Say how a loop is asked for where parameters stand in the numerator of a transfer function alone."""
-    written, chi = result.plant.written, result.answer["polynomial"]
-    if not isinstance(written, WrittenTransferFunction) or {result.question.K, result.question.L} != {None}:
+    written, chi, asked = result.plant.written, result.answer["polynomial"], result.question
+    is_closed = {asked.K, asked.L, asked.controller} != {None}
+    if is_closed or not isinstance(written, WrittenTransferFunction):
         return
     if chi.names <= {page.plant.variable} and not written.above.names <= {page.plant.variable}:
         page.remark("open_loop_asked", polynomial=str(written.above + written.below))
@@ -88,6 +90,8 @@ def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
     """Establish the gains and the characteristic polynomial; return its letter."""
     question = result.question
     chi: Scalar = result.answer["polynomial"]
+    if question.controller is not None:
+        return write_loop(page, question.controller, chi)
     for name, gain in (("K", question.K), ("L", question.L)):
         if gain is not None:
             page.define(name, gain, say="gain_open", closing=False)
@@ -103,6 +107,21 @@ def _polynomial_of_loop(page: Builder, result: StabilityRegion) -> str:
     if len(used) == 1:
         return next(iter(used))
     page.define("chi_cl", "chi_K chi_L", say="polynomial_of_loop", closing=False)
+    return "chi_cl"
+
+
+def write_loop(page: Builder, controller: WrittenTransferFunction, closed: Scalar) -> str:
+    """Write the polynomials of the loop with a controller; return the letter of that of the closed loop."""
+    plant, below = page.plant, monic(controller)[1]
+    page.define("F", factored_form(page, controller.value), say="margins_controller", closing=False)
+    opened = page["det(pencil(A))"]
+    opened = opened if below.is_one else opened @ page.value(below)
+    value = loop_polynomials(plant, controller)[0]
+    page.define("chi_o", opened, page.value(value), say="margins_cut_input", closing=False)
+    response = page["C pencil(A)^-1 B"]
+    response = response + page["D"] if plant.matrices.has_feedthrough else response
+    closing = page("chi_o (1 + F {response})", response=response)
+    page.define("chi_cl", closing, page.value(closed), say="margins_closed", closing=False)
     return "chi_cl"
 
 
@@ -257,7 +276,7 @@ def _case(page: Builder, case: Case, chi: str) -> Step:
     return CaseStep(when, tuple(case.substitution.items()), steps)
 
 
-def _region(page: Builder, result: StabilityRegion, written: str, chi: str) -> None:
+def _region(page: Builder, result: StabilityRegion, written: str, chi: str, *, with_pictures: bool = True) -> None:
     """Show the inequalities, the region in words and parts, and the pictures, below the inequalities where there are any."""
     region = result.region
     assert region is not None  # noqa: S101 - there is one here
@@ -273,7 +292,8 @@ def _region(page: Builder, result: StabilityRegion, written: str, chi: str) -> N
     if relations:
         fact = HoldsExactlyWhere(predicate("stable", page[chi]), relations)
         page.steps.append(Inequalities(fact, sentence("region_is", {}), answer=True))
-        _pictures(page, result, written, chi)
+        if with_pictures:
+            _pictures(page, result, written, chi)
     parts = _parts(result, region)
     others = tuple(finding for finding in found if finding not in decided and finding.key not in NUMBERS)
     if others or parts:
@@ -282,7 +302,7 @@ def _region(page: Builder, result: StabilityRegion, written: str, chi: str) -> N
         page.steps.append(RegionSummary(page[chi].formula, names, others, parts, say))
         if numbers:
             page.steps.append(RegionSummary(page[chi].formula, names, numbers))
-    if not relations:
+    if not relations and with_pictures:
         _pictures(page, result, written, chi)
 
 

@@ -63,6 +63,8 @@ QUESTIONS: dict[str, str] = {
     "ask stability_region K parameters": "For which {parameters} is the loop with the feedback gain $K$ stable?",
     "ask stability_region L parameters": "For which {parameters} is the observer with the gain $L$ stable?",
     "ask stability_region K L parameters": "For which {parameters} is the loop with the feedback gain $K$ and the observer gain $L$ stable?",
+    "ask stability_region controller": "Is the loop of the plant and the controller {controller} with negative feedback stable?",
+    "ask stability_region controller parameters": "For which {parameters} is the loop of the plant and the controller {controller} with negative feedback stable?",
     "also stability_region polynomial": "The polynomial is {polynomial}.",
     "also stability_region margin": "Every root must lie more than {margin} to the left of the imaginary axis.",
     "also stability_region radius": "Every root must have modulus less than {radius}.",

@@ -12,7 +12,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from symobs.exact import Factored, Matrix, RealNumber, Scalar, transfer
+from symobs.exact import Factored, Matrix, RealNumber, Scalar
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
 from symobs.exact.algebraic.nyquist import nyquist
 from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
@@ -23,10 +23,11 @@ from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation.builder import Builder, predicate
 from symobs.system.specification import desired_polynomial, in_common_field, read_gain, reject_both
 from symobs.system.transfer_function_text import read_transfer_function
-from symobs.tasks.analysis.page_parts import factored_form, given
+from symobs.tasks.analysis.page_parts import given
+from symobs.tasks.analysis.stability_region.loop_polynomials import loop_polynomials, monic
 from symobs.tasks.analysis.stability_region.margins import NotRational, gains_of, margins_of, numbers
 from symobs.tasks.analysis.stability_region.stability_region import stability_region
-from symobs.tasks.analysis.stability_region.stability_region_page import write_line
+from symobs.tasks.analysis.stability_region.stability_region_page import write_line, write_loop
 from symobs.tasks.design.compensator.compensator import observer_based, observer_order
 from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
@@ -283,25 +284,13 @@ def _plain(value: Any) -> Scalar:
     return found
 
 
-def monic(controller: WrittenTransferFunction) -> tuple[Scalar, Scalar]:
-    """Return numerator and denominator, the lead of the denominator 1; nothing is cancelled."""
-    lead = controller.below.coefficients(controller.variable)[0]
-    return controller.above / lead, controller.below / lead
-
-
 def loop_of_controller(
     plant: StateSpace, controller: WrittenTransferFunction, *, proper: bool = False
 ) -> tuple[Scalar, Scalar]:
     """Return P + N and P of F G; raises `InputError` where that is not strictly proper, or with `proper` not proper."""
-    m, where = plant.matrices, "specification.controller"
-    if (plant.inputs, plant.outputs) != (1, 1):
-        message = f"a loop with a controller has one input and one output, the plant {plant.inputs} and {plant.outputs}"
-        raise InputError(message, where=where, repair="give a plant with one of each")
-    above, below = monic(controller)
-    numerator, chi = transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable)
-    opened, moved = chi * below, numerator * above
-    if not moved.is_zero and moved.degree(plant.variable) >= opened.degree(plant.variable) + proper:
-        raise _not_proper(where, "give a controller with a pole more")
+    opened, moved = loop_polynomials(plant, controller)
+    if not proper and not moved.is_zero and moved.degree(plant.variable) == opened.degree(plant.variable):
+        raise _not_proper("specification.controller", "give a controller with a pole more")
     return opened + moved, opened
 
 
@@ -429,27 +418,24 @@ def write_margins(page: Builder, result: Margins) -> None:
 
 def _polynomials(page: Builder, result: Margins) -> None:
     """Write P and P + N."""
-    plant, kind = page.plant, None if result.design is None else result.design.task
-    opened: Term = page["det(pencil(A))"]
+    if result.design is None:
+        assert result.written is not None  # noqa: S101 - the other way to a loop
+        write_loop(page, result.written, result.answer["closed"])
+        return
+    kind, opened = result.design.task, page["det(pencil(A))"]
     closed: list[Term] = []
     if kind == "state_feedback":
         closed = [page["det(pencil(A) + B K)"]]
     elif kind == "observer":
         closed = [page["det(pencil(A) + L C)"]]
     elif kind == "compensator":
-        assert result.design is not None  # noqa: S101 - it is one
         own = page["A_c"] if page.defines("A_c") else page.set("A_c", result.design.fields["compensator_matrix"])
         opened = opened @ own.pencil.apply("det")
-    else:
-        assert result.written is not None  # noqa: S101 - the other way to a loop
-        page.define("F", factored_form(page, result.written.value), say="margins_controller", closing=False)
-        below = monic(result.written)[1]
-        opened = opened if below.is_one else opened @ page.value(below)
     place = "output" if kind == "observer" else "input"
     page.define("chi_o", opened, page.value(result.answer["opened"]), say=f"margins_cut_{place}", closing=False)
     if not closed:
         response = page["C pencil(A)^-1 B"]
-        response = response + page["D"] if plant.matrices.has_feedthrough else response
+        response = response + page["D"] if page.plant.matrices.has_feedthrough else response
         closed = [page("chi_o (1 + F {response})", response=response)]
     page.define("chi_cl", *closed, page.value(result.answer["closed"]), say="margins_closed", closing=False)
 

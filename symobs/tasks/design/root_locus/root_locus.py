@@ -6,10 +6,13 @@ p is the denominator of the loop without any cancelling, q its numerator, times 
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import cached_property
+from math import ceil
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import RealNumber, Root, Scalar, roots_of
+from symobs.exact.algebraic.root_location import complex_roots
 from symobs.exact.algebraic.root_loci import (
     angles_at,
     branch_points,
@@ -23,11 +26,14 @@ from symobs.exact.algebraic.root_loci import (
 from symobs.formula.tree import Decimals, Environment, Roots
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
+from symobs.stability.plots import range_around
+from symobs.stability.plots import root_locus as paths_of_roots
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import factored_form, given
+from symobs.tasks.analysis.stability_region.loop_polynomials import monic
 from symobs.tasks.analysis.stability_region.stability_region import stability_region
 from symobs.tasks.analysis.stability_region.stability_region_page import write_line
-from symobs.tasks.design.margins.margins import loop_of_controller, monic
+from symobs.tasks.design.margins.margins import loop_of_controller
 from symobs.tasks.result import Result, choose, holds, method, page_of, task
 
 if TYPE_CHECKING:
@@ -212,7 +218,9 @@ def write_root_locus(page: Builder, result: RootLocus) -> None:
             for kind in ("branch", "departure", "arrival", "crossing"):
                 _landmarks(page, result, kind)
         page.remark("locus_stability")
-        write_line(page, result.region, "chi_p")
+        write_line(page, result.region, "chi_p", with_pictures=False)
+        if result.is_numeric:
+            _picture(page, result)
 
 
 def _polynomials(page: Builder, result: RootLocus) -> None:
@@ -242,6 +250,22 @@ def _ends(page: Builder, result: RootLocus) -> None:
             page.remark(key, roots=Roots(of.formula, roots))
     if result.centroid is not None:
         page.remark("locus_asymptotes", excess=str(result.excess), centroid=page.value(result.centroid))
+
+
+def _picture(page: Builder, result: RootLocus) -> None:
+    """Draw the paths from k = 0 to twice the largest gain of a landmark, with the poles and the zeros."""
+    p, q, variable, discrete = result.answer["p"], result.answer["q"], page.plant.variable, page.plant.is_discrete
+    gains = [told["k"] for kind in ("branch", "crossing") for told in landmarks(kind, p, q, variable)]
+    end = Fraction(ceil(2 * max([Fraction(1), *gains])))
+    drawn = paths_of_roots(
+        p + Scalar.symbol("k") * q, variable, "k", (Fraction(0), end), None, Fraction(1) if discrete else None
+    )
+    if drawn is None:
+        return
+    zeros = tuple(complex_roots([c.fraction() for c in q.coefficients(variable)])) if q.degree(variable) > 0 else ()
+    places = [place for path in (*drawn.paths, zeros) for place in path]
+    window = range_around([x for x, _ in places], spread=True), range_around([y for _, y in places], spread=True)
+    page.plot(replace(drawn, zeros=zeros, window=window), page["chi_p"])
 
 
 def _landmarks(page: Builder, result: RootLocus, kind: str) -> None:
