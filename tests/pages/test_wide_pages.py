@@ -89,3 +89,22 @@ def test_long_gains_have_letters_in_which_the_page_goes_on() -> None:
     assert re.search(r"⎡ +-l₁ +1 +0 +0⎤", pages[0])
     assert pages[0].count("-k_s/m_s - l₂") == 1
     assert "K = [K₁  K₂] = [f₁  f₂  f₃  f₄]" in pages[1]
+
+
+# -- functions of time -------------------------------------------------------------------------------------------------
+
+
+def test_a_boxed_exponential_has_no_named_entries() -> None:
+    page = symobs.matrix_exponential(symobs.StateSpace("[0 1 0; 0 0 1; -10 -9 -4]")).to("latex")
+    assert r"\answer{" in page
+    assert (
+        r"(e^{At})_{" not in page
+    )  # 1/10 (e^{-t} (7 sin 2t - 4 cos 2t) + 4 e^{-2t}) and others: the sum of modes is boxed
+
+
+def test_the_number_e_has_no_exponent_and_a_fraction_of_it_no_needless_signs() -> None:
+    plant = symobs.StateSpace("[0 1 0; 0 -1 1; 0 0 -2]", "[0; 0; 1]")
+    found = symobs.minimum_energy_input(plant, initial="0, 0, 0", final="1, 0, 0", horizon="1")
+    page = found.to("latex")
+    assert "e^{1}" not in page
+    assert r"\frac{2+8e+2e^{2}}{2+2e-e^{2}}" in page  # -2 - 8 e - 2 e^2 over e^2 - 2 e - 2

@@ -134,9 +134,13 @@ def _time_function(value: Scalar) -> Formula:
         if (raised := _raised(value)) is not None:
             return raised
         above = value.numerator
-        negative = above.terms()[0][0] < 0 and len(above.terms()) == 1
-        top = formula_of(-above if negative else above, "")
-        fraction = Quotient(top, formula_of(below, ""))
+        negative = all(coefficient < 0 for coefficient, _ in above.terms())
+        above = -above if negative else above
+        if negative and any(
+            coefficient < 0 for coefficient, _ in below.terms()
+        ):  # (1 + e)/(2 − e) for −(1 + e)/(e − 2)
+            negative, below = False, -below
+        fraction = Quotient(formula_of(above, ""), formula_of(below, ""))
         return Negative(fraction) if negative else fraction
     separate = _grouped(_parts(value.numerator), below)
     if below.is_one:
@@ -258,9 +262,9 @@ def _positive_first(terms: list[Formula]) -> list[Formula]:
     return [terms[lead], *terms[:lead], *terms[lead + 1 :]]
 
 
-def _speed(part: Part) -> tuple[int, str]:
+def _speed(part: Part) -> tuple[int, str, int]:
     text = " ".join(name for name, _ in part)
-    return len(text), text
+    return len(text), text, sum(power for _, power in part)
 
 
 def _sum_of(group: dict[Part, Scalar], below: Scalar) -> list[Formula]:
