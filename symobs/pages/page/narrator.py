@@ -130,6 +130,19 @@ def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, 
     return together, apart
 
 
+def _signs_at_once(steps: Sequence[Step]) -> list[Step]:
+    """Return steps with the declared signs of all letters in the first sentence that says any."""
+    declared = [
+        step for step in steps if isinstance(step, Conclude) and step.sentence and step.sentence.key == "declared"
+    ]
+    slots = [slot for step in declared if step.sentence for _, slot in step.sentence.slots]
+    signs = dict.fromkeys(fact for slot in slots if isinstance(slot, Conjunction) for fact in slot.relations)
+    if len(declared) < 2 or not signs:
+        return list(steps)
+    joined = replace(declared[0], sentence=Sentence("declared", (("signs", Conjunction(tuple(signs))),)))
+    return [joined if step is declared[0] else step for step in steps if step not in declared[1:]]
+
+
 def _given_relations(step: Step) -> Iterator[Relation]:
     match step:
         case Given(relations=relations, silent=False):
@@ -211,7 +224,7 @@ class _PageBlocks:
 
     def emit_given(self, statement: Sequence[Step]) -> None:
         """Emit the given data that are not printed yet."""
-        news = [new for step in statement for new in self.unprinted_steps(step)]
+        news = _signs_at_once([new for step in statement for new in self.unprinted_steps(step)])
         if news:
             self.blocks.append(Heading("", (self.language.phrases["given"],), self.time))
             for step in news:
