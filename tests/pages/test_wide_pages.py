@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 
 import symobs
@@ -108,3 +109,18 @@ def test_the_number_e_has_no_exponent_and_a_fraction_of_it_no_needless_signs() -
     page = found.to("latex")
     assert "e^{1}" not in page
     assert r"\frac{2+8e+2e^{2}}{2+2e-e^{2}}" in page  # -2 - 8 e - 2 e^2 over e^2 - 2 e - 2
+
+
+def test_sums_over_the_same_roots_are_one_sum() -> None:
+    """Two masses with damping: N(λ)/(λ q′(λ)) is the residue of P(s)/s, and -λ n(λ) = N(λ) modulo q, N = s² + s + 1."""
+    plant = symobs.StateSpace("[0 1 0 0; -2 -1 1 0; 0 0 0 1; 1 0 -1 -1]", "[0; 1; 0; 0]", "[1 0 0 0]")
+    found = symobs.response(plant, input="1")
+    roots = np.roots([1, 2, 4, 3, 1])
+    n, residue = np.polyval([1, 2, 3, 2], roots), np.polyval([1, 1, 1], roots) / roots
+    assert np.allclose(-n, residue)
+    page = found.to("latex")
+    answer = page.partition("y(t)=")[2].partition(r"\]")[0]
+    assert answer.count(r"\sum") == 1
+    assert r"1-\sum" in answer
+    assert r"(\lambda^3+2\lambda^2+3\lambda+2)e^{\lambda t}" in answer
+    assert "x(t)_{" not in page  # no named entries in the box of the state
