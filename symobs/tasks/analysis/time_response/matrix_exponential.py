@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 TIME = Scalar.symbol("t")
 #: Sums of up to this many matrices are shown before the entries.
 _SHOWN_SUM = 4
-#: Behind the sum the entries are shown up to this many characters in a row, as wide as they stand in a line.
+#: Behind the sum of more than two states the entries are shown up to this many characters in a row.
 _ENTRIES = 130
 
 
@@ -185,7 +185,7 @@ def tell_exponential(page: Builder, found: Exponential, matrix: Matrix, *, answe
     members: list[Term | Matrix] = [page.term(_sum_of_modes(found))] if is_shown else []
     say = "exponential_sum" if members and "exponential_sum" not in page.told else "exponential_here"
     page.told.add(say)
-    if found.is_closed and (not members or is_narrow(matrix, within=_ENTRIES)):
+    if found.is_closed and (not members or found.order == 2 or is_narrow(matrix, within=_ENTRIES)):
         members.append(matrix)
     page.define("exp_At", *members, say=say, answer=answer, closing=False)
     tell_roots(page, matrix)
