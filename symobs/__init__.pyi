@@ -31,6 +31,7 @@ from symobs.ground.errors import UsageError as UsageError
 from symobs.live import live as live
 from symobs.system import StateSpace as StateSpace
 from symobs.system.linearize import linearize as linearize
+from symobs.tasks.analysis.equilibria.equilibria import Equilibria as _Equilibria
 from symobs.tasks.analysis.lyapunov.lyapunov import LyapunovSolution as _LyapunovSolution
 from symobs.tasks.analysis.modes.detectability import Detectability as _Detectability
 from symobs.tasks.analysis.modes.detectability import Stabilizability as _Stabilizability
@@ -65,10 +66,11 @@ from symobs.tasks.design.reference.feedforward import FeedforwardDesign as _Feed
 from symobs.tasks.design.reference.integral_action import IntegralAction as _IntegralAction
 from symobs.tasks.design.reference.output_regulation import OutputRegulation as _OutputRegulation
 from symobs.tasks.design.reference.tracking import TrackingDesign as _TrackingDesign
+from symobs.tasks.design.root_locus.root_locus import RootLocus as _RootLocus
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
 _IsPlant: TypeAlias = _CanonicalFormResult | _DecompositionResult | _DualResult | _ZeroOrderHoldResult
-_Plant: TypeAlias = StateSpace | _IsPlant | tuple[Sequence[_Number], Sequence[_Number]]
+_Plant: TypeAlias = StateSpace | _IsPlant | tuple[Sequence[_Number], Sequence[_Number]] | Mapping[str, Any]
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]
@@ -332,6 +334,26 @@ def dual(
 ) -> _DualResult:
     """Return the dual plant (± Aᵀ, Cᵀ, Bᵀ, Dᵀ) and the ranks that are equal by duality."""
 
+class _EquilibriaResult(_Equilibria):
+    """What `equilibria` returns."""
+
+    @property
+    def points(self) -> tuple[Any, ...]: ...
+    @property
+    def stable(self) -> tuple[str, ...]: ...
+    @property
+    def stable_if(self) -> tuple[Any, ...]: ...
+    @property
+    def complete(self) -> bool: ...
+
+def equilibria(
+    plant: _Plant,
+    *,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _EquilibriaResult:
+    """Return all x, u with f(x, u) = 0 (f(x, u) = x in discrete time), and whether the linearisation at each is stable."""
+
 class _FeedforwardResult(_FeedforwardDesign):
     """What `feedforward` returns."""
 
@@ -570,6 +592,20 @@ class _MarginsResult(_Margins):
     def closed_loop_polynomial(self) -> Expr: ...
     @property
     def open_loop_polynomial(self) -> Expr: ...
+    @property
+    def open_loop_unstable(self) -> int: ...
+    @property
+    def closed_loop_unstable(self) -> int: ...
+    @property
+    def encirclements(self) -> int: ...
+    @property
+    def axis_crossings(self) -> tuple[Any, ...]: ...
+    @property
+    def phase_crossover(self) -> tuple[str, ...]: ...
+    @property
+    def gain_crossover(self) -> tuple[str, ...]: ...
+    @property
+    def delay_margin(self) -> str: ...
 
 @overload
 def margins(design: _StateFeedbackResult | _ObserverResult | _CompensatorResult | _LqrResult | _KalmanResult) -> _MarginsResult: ...
@@ -834,6 +870,38 @@ def response(
     floats: str | None = None,
 ) -> _ResponseResult:
     """Return the response x(t) = e^{At} x₀ + ∫₀ᵗ e^{A(t−s)} B u(s) ds and y = C x + D u to an initial state and an input."""
+
+class _RootLocusResult(_RootLocus):
+    """What `root_locus` returns."""
+
+    @property
+    def polynomial(self) -> Expr: ...
+    @property
+    def poles(self) -> tuple[Any, ...]: ...
+    @property
+    def zeros(self) -> tuple[Any, ...]: ...
+    @property
+    def asymptotes(self) -> Mapping[str, Any]: ...
+    @property
+    def breakaway(self) -> tuple[Any, ...]: ...
+    @property
+    def crossings(self) -> tuple[Any, ...]: ...
+    @property
+    def departure(self) -> tuple[Any, ...]: ...
+    @property
+    def arrival(self) -> tuple[Any, ...]: ...
+    @property
+    def stable_if(self) -> tuple[str, ...]: ...
+
+def root_locus(
+    plant: _Plant,
+    *,
+    controller: _Number | None = None,
+    gain_sign: int = 1,
+    method: str = "auto",
+    floats: str | None = None,
+) -> _RootLocusResult:
+    """Return the root locus of 1 + k C(s)G(s): the roots of p + k q for k from 0, with landmarks that are exact."""
 
 class _StabilityRegionResult(_StabilityRegion):
     """What `stability_region` returns."""

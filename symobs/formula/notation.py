@@ -7,6 +7,7 @@ polynomial; x̂ estimate, e = x − x̂ error.  A polynomial's letter carries it
 from __future__ import annotations
 
 import re
+import unicodedata
 from typing import TYPE_CHECKING
 
 from symobs.ground.dataclass import dataclass
@@ -56,6 +57,20 @@ LETTERS: dict[str, LetterForm] = {
     "D": LetterForm("D", "D", "feedthrough matrix"),
     "f_x": LetterForm("f", "f", "rate of change of the states"),
     "h_x": LetterForm("h", "h", "output as a function of the states"),
+    "lagrange": LetterForm(
+        r"\frac{\mathrm d}{\mathrm dt}\frac{\partial T}{\partial\dot q}-\frac{\partial T}{\partial q}"
+        r"+\frac{\partial V}{\partial q}=Q",
+        "d/dt(∂T/∂q̇) - ∂T/∂q + ∂V/∂q = Q",
+        "Lagrange's equation",
+    ),
+    "T_q": LetterForm("T", "T", "kinetic energy"),
+    "V_q": LetterForm("V", "V", "potential energy"),
+    "Q_q": LetterForm("Q", "Q", "generalised forces"),
+    "M_q": LetterForm("M", "M", "matrix of the highest derivatives in the equations of motion"),
+    **{
+        f"A_e{k}": LetterForm(rf"A_{k}", f"A{'₀₁₂₃₄₅₆₇₈₉'[k]}", "matrix of the linearisation at an equilibrium")
+        for k in range(1, 10)
+    },
     "partial": LetterForm(r"\partial", "∂", "sign of a partial derivative"),
     "K": LetterForm("K", "K", "state feedback gain"),
     "L": LetterForm("L", "L", "observer gain"),
@@ -318,6 +333,9 @@ FUNCTIONS: dict[str, tuple[str, str]] = {
     "adj": (r"\operatorname{adj}", "adj"),
     "rank": (r"\operatorname{rank}", "rank"),
     **{name: (rf"\{name}", name) for name in ("sin", "cos", "sinh", "cosh")},
+    **{f"a{name}": (rf"\arc{name}", f"arc{name}") for name in ("sin", "cos", "tan")},
+    "log": (r"\ln", "ln"),
+    "sign": (r"\operatorname{sgn}", "sgn"),
     "re": (r"\operatorname{Re}", "Re"),
     "im": (r"\operatorname{Im}", "Im"),
     "mu_at": (r"\mu", "μ"),
@@ -392,6 +410,8 @@ GREEK = [
 GREEK_LETTERS = dict(zip(GREEK, "αβγδεζηθικλμνξοπρστυφχψωΓΔΘΛΞΠΣΥΦΨΩ", strict=True)) | {"lam": "λ"}
 GREEK_LATEX = {name: rf"\{name}" for name in GREEK if name != "omicron"} | {"lam": r"\lambda", "omicron": "o"}
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+#: The rate of a variable, and the rate of that.
+_DOTTED = re.compile(r"(.+)_(d?dot)")
 _NAME = re.compile(r"^([A-Za-z]+?)_?(\d*)((?:_[A-Za-z0-9]+)*)$")
 
 
@@ -399,8 +419,10 @@ def symbol_latex(name: str, declared: str | None = None) -> str:
     r"""Return the LaTeX of a parameter's name: `omega_0` → `\omega_{0}`, and `h1` → `h_{1}`."""
     if declared:
         return declared
-    stem, digits, rest = _split(name)
+    dotted = _DOTTED.fullmatch(name)
+    stem, digits, rest = _split(dotted[1] if dotted else name)
     head = GREEK_LATEX.get(stem) or (stem if len(stem) == 1 else rf"\mathit{{{stem}}}")
+    head = rf"\{dotted[2]}{{{head}}}" if dotted else head
     below = ",".join([digits, *rest] if digits else rest)
     return f"{head}_{{{below}}}" if below else head
 
@@ -419,6 +441,9 @@ def symbol_text(name: str, declared: str | None = None) -> str:
     """Return a parameter's name on a terminal: `omega_c` → ω_c, `h1` → h₁; other names stay as they are."""
     if declared == sans_serif(name):
         return "".join(_SANS_SERIF.get(character, character) for character in name)
+    if dotted := _DOTTED.fullmatch(name):
+        plain = symbol_text(dotted[1])
+        return unicodedata.normalize("NFC", plain[0] + ("\u0307" if dotted[2] == "dot" else "\u0308") + plain[1:])
     stem, digits, rest = _split(name)
     if stem not in GREEK_LETTERS and (rest or len(stem) > 1):
         return name

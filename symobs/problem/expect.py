@@ -174,7 +174,8 @@ def agree(found: Any, expected: Any, names: Any, where: str) -> bool:
     if isinstance(found, (Scalar, Factored, int)):
         value = found.value if isinstance(found, Factored) else Scalar.of(found) if isinstance(found, int) else found
         known = _knowing(names, value)
-        return functions_agree(parse_scalar(expected, known, where=where, functions=True, rounding=True), value, names)
+        wanted = parse_scalar(expected, known, where=where, functions=True, rounding=True, nonlinear=True)
+        return functions_agree(wanted, value, names)
     return str(found) == str(expected) or _agree_as_mathematics(str(found), str(expected), names, where)
 
 
@@ -306,7 +307,7 @@ def _implies(
 
 
 _NOT_RATIONAL = re.compile(r"sqrt|CRootOf|oo")
-_FUNCTION = re.compile(r"\b(exp|sin|cos|sinh|cosh)\b|\bt\b")
+_FUNCTION = re.compile(r"\b(exp|log|a?sin|a?cos|atan|sinh|cosh)\b|\bt\b")
 _WORD = re.compile(r"[A-Za-z]+")
 _MOST_SHOWN = 200
 
@@ -406,7 +407,7 @@ def unreadable(expect: Mapping[str, Any], names: Any, variable: str) -> list[Sym
                 for part in (sides[1], sides[3]) if sides else (value,):
                     if part.lstrip().startswith("[") or _FUNCTION.search(part):
                         others = known and {name: sign for name, sign in known.items() if name != time}
-                        parse_matrix(part, others, variable=time, where=where, functions=True)
+                        parse_matrix(part, others, variable=time, where=where, functions=True, nonlinear=True)
                     else:
                         parse_poles(part, known, where=where)
             except SymobsError as error:

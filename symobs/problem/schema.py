@@ -11,7 +11,7 @@ from symobs.problem.fields import ANY_TABLE, MARKING, TEXT, by_name, list_of, ta
 from symobs.problem.file_tables import Errors, nearest, report_unknown, table_of
 from symobs.system import StateSpace, Symbols, read_scalar
 from symobs.system.conditions import SIGNS
-from symobs.system.linearize import linearize
+from symobs.system.linearize import linearize, without_equilibrium
 from symobs.system.reading import read_time
 from symobs.system.specification import CHOICES, KINDS
 from symobs.system.transfer_function_text import REALISATIONS
@@ -55,7 +55,7 @@ TOP: dict[str, dict[str, Any]] = {
         "type": "object",
         "additionalProperties": {"type": ["string", "integer"]},
     },
-    "plant": {"description": "A, B, C, D, or transfer_function, or f, h, states, inputs, equilibrium; dt"},
+    "plant": {"description": "A, B, C, D, or transfer_function, or f or equations of motion with an equilibrium; dt"},
     "specification": {"description": "what the tasks need"},
     "values": {"description": "values of symbols, k = 4: the answers are those at these values"},
     "expect": {"description": "answers to hold the results against; [expect.TASK] for one task", "type": "object"},
@@ -78,7 +78,8 @@ _PRINTED = {
 
 
 PRINTED = list_of(table(_PRINTED), 200)
-NONLINEAR = ("f", "h", "states", "inputs", "equilibrium")
+MOTION = ("coordinates", "equations", "kinetic", "potential", "forces")
+NONLINEAR = ("f", "h", "states", "inputs", "equilibrium", *MOTION)
 PLANT = ("A", "B", "C", "D", "transfer_function", "realisation", *NONLINEAR, "dt")
 #: A compensator has poles for each of its halves; a task that is one half reads them where nothing else is said of it.
 _HALVES: dict[tuple[str, ...], str] = {("K",): "control", ("L",): "observer"}
@@ -163,7 +164,16 @@ def schema() -> dict[str, Any]:
             "states": {"description": 'the states of f in their order: "theta, omega"', **names},
             "inputs": {"description": 'the inputs of f: "u"', **names},
             "equilibrium": {
-                "description": "where f and h are linearised: a value for each state and input",
+                "description": "where f and h are linearised: values of states and inputs; those left out are found",
+                "type": "object",
+                "additionalProperties": number_or_text,
+            },
+            "coordinates": {"description": "instead of f: the coordinates of equations of motion", **names},
+            "equations": {"description": "the equations of motion: \"m*x'' + k*x = F\"", **names},
+            "kinetic": {"description": "instead of equations: the kinetic energy", **number_or_text},
+            "potential": {"description": "with kinetic: the potential energy", **number_or_text},
+            "forces": {
+                "description": 'with kinetic: the generalised force along each coordinate: { x = "F" }',
                 "type": "object",
                 "additionalProperties": number_or_text,
             },
@@ -214,6 +224,8 @@ def schema() -> dict[str, Any]:
             _has("plant", "A"),
             _has("plant", "transfer_function"),
             _has("plant", "f"),
+            _has("plant", "equations"),
+            _has("plant", "kinetic"),
             _has("specification", "polynomial"),
         ],
     }
@@ -252,9 +264,12 @@ def period_of(data: Mapping[str, Any], symbols: Symbols, errors: Errors) -> obje
 
 
 def plant_of(
-    data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, optional: bool
+    data: Mapping[str, Any], symbols: Symbols, dt: object, errors: Errors, *, optional: bool, moving: bool = False
 ) -> StateSpace | None:
-    """Return the plant, None where it cannot be had; where it is `optional` a polynomial does instead."""
+    """Return the plant, None where it cannot be had; where it is `optional` a polynomial does instead.
+
+    Where nothing but its equilibria is asked for, a nonlinear plant stays as it is, `moving`, without one.
+    """
     table = table_of(data, "plant", errors)
     if not isinstance(data.get("plant", {}), Mapping):
         return None
@@ -266,7 +281,7 @@ def plant_of(
         errors.note(f"both {forms[-1]} and {forms[0]} are given", "plant", "keep one of them")
     elif nonlinear:
         with errors:
-            return linearize(**{"f": None, "states": "", "equilibrium": None, **nonlinear}, dt=dt, symbols=symbols)
+            return (without_equilibrium if moving else linearize)(**nonlinear, dt=dt, symbols=symbols)
     elif "realisation" in table and "transfer_function" not in table:
         errors.note("there is nothing to realise", "plant.realisation", "it belongs to transfer_function: leave it out")
     elif "transfer_function" in table:

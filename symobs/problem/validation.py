@@ -164,7 +164,12 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     symbols = with_constants(table_of(data, "constants", errors), symbols, errors)
     dt = period_of(data, symbols, errors)
     plant = plant_of(
-        data, symbols, dt, errors, optional=bool(wanted) and all(task.works_without_plant for task in wanted)
+        data,
+        symbols,
+        dt,
+        errors,
+        optional=bool(wanted) and all(task.works_without_plant for task in wanted),
+        moving={task.name for task in wanted} == {"equilibria"},
     )
     specification, own = _specification(data, (*asked, *wanted), convention, symbols, errors)
     kinds = _kinds((*asked, *wanted))
@@ -187,7 +192,8 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
         with errors:
             tried = Problem(title, source, ids, wanted, plant, specification, expect, convention)
             replace(tried, values=values, plant_of=plant_task, own=own).solve()
-            errors.found += unreadable(expect, symbols.names, plant.variable)
+            moving = plant.nonlinear.states + plant.nonlinear.inputs if plant.nonlinear is not None else ()
+            errors.found += unreadable(expect, symbols.naming(moving, "plant").names, plant.variable)
     else:
         _read_alone(specification, _kinds(wanted), expect, symbols, read_time(dt, symbols).variable, errors)
         for missing in missing_poles(wanted, data.get("specification")):

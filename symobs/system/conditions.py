@@ -137,6 +137,10 @@ def _sign_of_undeclared(name: str, signs: Mapping[str, str]) -> str:
         return sign_of_number(found.value)
     if found.kind == "sqrt":
         return "positive" if sign_of(found.argument, signs) == "positive" else "real"
+    if found.kind in {"asin", "atan", "sign", "sinh"}:
+        return sign_of(found.argument, signs)
+    if found.kind in {"acos", "abs"}:
+        return "positive" if found.kind == "abs" and never_zero(found.argument, signs) else "nonnegative"
     return "positive" if found.kind in {"exp", "cosh"} else "real"
 
 

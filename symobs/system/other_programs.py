@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -21,12 +22,16 @@ _MAKE_ONE = 'give a symobs.StateSpace, for example symobs.StateSpace("[0 1; 0 -1
 def as_plant(value: Any, *, only: bool = True, floats: str | None = None) -> Any:
     """Return the plant of a result, of a system of python-control, SciPy or SymPy, or of a pair of lists of coefficients.
 
-    A `StateSpace` is returned as it is, and what is no plant where it need not be the `only` thing that may come: raises
-    `InputError` otherwise, saying how to make one.  A list of two lists of one length may be meant as a matrix: a
-    numerator and a denominator come as a tuple.
+    The keywords of `symobs.linearize` are a plant whose equilibria can be asked for.  A `StateSpace` is returned as it is,
+    and what is no plant where it need not be the `only` thing that may come: raises `InputError` otherwise, saying how to
+    make one.  A list of two lists of one length may be meant as a matrix: a numerator and a denominator come as a tuple.
     """
     if isinstance(value, StateSpace):
         return value
+    if isinstance(value, Mapping) and {"f", "equations", "kinetic"} & value.keys():
+        from symobs.system.linearize import without_equilibrium  # noqa: PLC0415 - of such plants alone
+
+        return without_equilibrium(**value)
     if (there := getattr(value, "as_plant", None)) is not None:  # the result of a task
         return there
     module = str(type(value).__module__)

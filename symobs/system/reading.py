@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from decimal import Decimal
 from functools import lru_cache
 from math import lcm, prod
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Complex, Ideal, Matrix, Scalar
 from symobs.exact.algebraic.real_algebraic import RealRoot
@@ -31,6 +31,9 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InexactInput, InputError, ShapeMismatch, SymobsError
 from symobs.system.conditions import sign_of
 from symobs.system.symbols import Symbols, is_sympy, sympy_symbols
+
+if TYPE_CHECKING:
+    from symobs.system.motion import Motion
 
 #: Signs that a value cannot have whose parameter is declared with another.
 _EXCLUDED = {
@@ -105,18 +108,22 @@ def _mixed_rows(value: Sequence[Any], symbols: Symbols, where: str, *, functions
     )
 
 
-def read_scalar(value: object, symbols: Symbols, where: str, *, functions: bool = False) -> Scalar:
-    """Return the exact scalar of a number, a text or a SymPy expression; `functions` as for a matrix."""
+def read_scalar(
+    value: object, symbols: Symbols, where: str, *, functions: bool = False, nonlinear: bool = False
+) -> Scalar:
+    """Return the exact scalar of a number, a text or a SymPy expression; `functions` and `nonlinear` as for a matrix."""
     if isinstance(value, Scalar):
         return value
     if is_sympy(value):
         from symobs.exact.sympy_bridge.conversion import scalar_from_sympy  # noqa: PLC0415
 
         return scalar_from_sympy(value, where, roots=functions)
-    return parse_scalar(value, symbols.names, where=where, functions=functions)
+    return parse_scalar(value, symbols.names, where=where, functions=functions, nonlinear=nonlinear)
 
 
-def read_values(values: Mapping[Any, Any], symbols: Symbols, names: Collection[str]) -> dict[str, Scalar]:
+def read_values(
+    values: Mapping[Any, Any], symbols: Symbols, names: Collection[str], *, nonlinear: bool = False
+) -> dict[str, Scalar]:
     """Return the values that parameters, given by their names or as SymPy symbols, are to have.
 
     Raises `InputError` for what is none of the names, and for a value that the declared sign of its parameter excludes.
@@ -128,7 +135,7 @@ def read_values(values: Mapping[Any, Any], symbols: Symbols, names: Collection[s
         if name not in names and not isinstance(value, Scalar):  # our own values are of generators, too
             known = f"use {', '.join(sorted(names))}" if names else f"it has none: leave {shown(name, 40)} out"
             raise InputError(f"{shown(name, 40)} is no parameter of the plant", where=where, repair=known)
-        read[name] = read_scalar(value, symbols, where, functions=True)
+        read[name] = read_scalar(value, symbols, where, functions=True, nonlinear=nonlinear)
         sign = symbols.sign(name)
         if not isinstance(value, Scalar) and sign_of(read[name], symbols.signs) in _EXCLUDED.get(sign, ()):
             message = f"{read[name]} is not {sign}, as {name} is declared"
@@ -361,13 +368,36 @@ def shape_errors(parts: Mapping[str, Matrix | None]) -> list[SymobsError]:
 
 @dataclass
 class Nonlinear:
-    """A plant ẋ = f(x, u), y = h(x, u) (x(k+1) = f in discrete time) and an equilibrium of it, by name."""
+    """A plant ẋ = f(x, u), y = h(x, u) (x(k+1) = f in discrete time) and an equilibrium of it, by name.
+
+    It comes from its equations of motion where there are any.  Where there is the equilibrium some values are `positive` and
+    others `nonzero`; what it leaves free is its own value, or has one of the `new_names` where the linearisation depends on it.
+    """
 
     f: Matrix
     h: Matrix | None
     states: tuple[str, ...]
     inputs: tuple[str, ...]
     equilibrium: tuple[tuple[str, Scalar], ...]
+    motion: Motion | None = None
+    positive: tuple[Scalar, ...] = ()
+    nonzero: tuple[Scalar, ...] = ()
+    new_names: frozenset[str] = frozenset()
+    #: The values of inputs that are given: of the equilibria those are meant that have them.
+    held: tuple[tuple[str, Scalar], ...] = ()
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """The states and inputs that the equilibrium leaves free."""
+        return tuple(name for name, value in self.equilibrium if value == Scalar.symbol(name))
+
+    def at_rest(self, known: Mapping[str, Scalar], *, is_discrete: bool) -> list[Scalar]:
+        """Return what is 0 at an equilibrium with some known values: the equations without their derivatives, or f."""
+        if self.motion is not None:
+            still = {**dict.fromkeys(self.motion.derivatives, Scalar.of(0)), **known}
+            return [substitute(equation, still) for equation in self.motion.equations]
+        rest = [f - Scalar.symbol(x) if is_discrete else f for f, x in zip(self.f.entries, self.states, strict=True)]
+        return [substitute(entry, known) for entry in rest]
 
     def jacobian(self, function: Matrix, names: Sequence[str]) -> Matrix:
         """Return ∂ function / ∂ names, a column for each name."""
@@ -381,7 +411,13 @@ class Nonlinear:
         """Return the plant with parameters replaced."""
         point = tuple((name, substitute(value, values)) for name, value in self.equilibrium)
         f, h = substitute(self.f, values), None if self.h is None else substitute(self.h, values)
-        return Nonlinear(f, h, self.states, self.inputs, point)
+        motion = None if self.motion is None else self.motion.moved(values)
+        positive = tuple(substitute(value, values) for value in self.positive)
+        held = tuple((name, substitute(value, values)) for name, value in self.held)
+        nonzero = tuple(substitute(value, values) for value in self.nonzero)
+        return Nonlinear(
+            f, h, self.states, self.inputs, point, motion, positive, nonzero, self.new_names - {*values}, held
+        )
 
 
 # The time domain as a type: `Continuous`, `TimeVarying` or `Discrete`.

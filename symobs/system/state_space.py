@@ -15,6 +15,7 @@ from symobs.exact.core.generators import NotWritten, substitute, symbols_in
 from symobs.exact.floating.sampled import nearest_double
 from symobs.exact.numerals.written_digits import in_digits
 from symobs.ground.errors import InputError, SymobsError, raise_all
+from symobs.system.conditions import Condition, sign_of
 from symobs.system.findings import Findings
 from symobs.system.reading import (
     Continuous,
@@ -164,6 +165,8 @@ class StateSpace:
 
     #: Whether irrational data were rounded.
     is_rounded = False
+    #: What is positive where the plant is: an equilibrium may be there for some parameters alone.
+    positive: tuple[Scalar, ...] = ()
 
     def __init__(
         self,
@@ -446,6 +449,12 @@ class StateSpace:
     def ideal(self) -> Ideal | None:
         """The ideal of the relations, None if there are none."""
         return Ideal.of(self.equations) if self.equations else None
+
+    @property
+    def exists_where(self) -> tuple[Condition, ...]:
+        """That its equilibrium is there, where the declared signs do not say so."""
+        signs = self.symbols.signs
+        return tuple(Condition("domain", v, ">") for v in self.positive if sign_of(v, signs) != "positive")
 
     @property
     def relations(self) -> tuple[Scalar, ...]:

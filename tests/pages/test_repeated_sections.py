@@ -69,3 +69,21 @@ def test_a_part_that_is_answered_already_keeps_its_heading_and_says_where(detail
     assert "This has been shown in section 1." in again
     assert "det 𝒪 = 1 ≠ 0" in again
     assert "(C, A) is observable" in again
+
+
+def test_the_signs_of_all_letters_are_assumed_once() -> None:
+    """The poles of the second task bring in a letter that the plant of the first does not have."""
+    problem = read("""
+        tasks = ["controllability", "state_feedback"]
+        [symbols]
+        a = "positive"
+        p = "positive"
+        [plant]
+        A = "[0 1; -a 0]"
+        B = "[0; 1]"
+        [specification]
+        poles = "-p, -p"
+    """)
+    page = str(render(problem.document(problem.solve()), "text"))
+    assert page.count("Throughout, we assume") == 1
+    assert "Throughout, we assume a > 0, p > 0." in page

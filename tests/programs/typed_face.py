@@ -49,7 +49,7 @@ from sympy.matrices import MatrixBase
 NAMES = """
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
 _IsPlant: TypeAlias = _CanonicalFormResult | _DecompositionResult | _DualResult | _ZeroOrderHoldResult
-_Plant: TypeAlias = StateSpace | _IsPlant | tuple[Sequence[_Number], Sequence[_Number]]
+_Plant: TypeAlias = StateSpace | _IsPlant | tuple[Sequence[_Number], Sequence[_Number]] | Mapping[str, Any]
 _Matrix: TypeAlias = str | Sequence[object] | MatrixBase
 
 TASK_PACKAGES: tuple[str, ...]

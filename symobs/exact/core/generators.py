@@ -1,4 +1,4 @@
-"""Functions as generators: exp, cos, sin, cosh and sinh of an argument, and square roots.
+"""Functions as generators: exp, cos, sin, cosh and sinh of an argument, square roots, and those of nonlinear plants.
 
 A generator's name is SymPy's text, `exp(-2*t)` or `cos(sqrt(3)*t)`, and carries the function (`Generator`), so that its
 derivative follows from the value alone: d/dt is Σ ∂/∂generator · generator′.  Different generators may depend on each
@@ -46,7 +46,7 @@ class NotWritten(ArithmeticError):
 
 @dataclass
 class Function:
-    """kind(argument): exp, cos, sin, cosh, sinh, or sqrt, whose argument is the radicand."""
+    """kind(argument): exp, cos, sin, cosh, sinh, one of `INVERSES` or `PIECES`, or sqrt, whose argument is the radicand."""
 
     kind: str
     argument: Scalar
@@ -80,10 +80,12 @@ class Function:
     def rate(self, time: str) -> Scalar:
         """Return d/dt, by the chain rule."""
         slope = derivative(self.argument, time)
-        if self.kind not in KINDS or slope.is_zero:
-            return slope / (2 * self.value) if self.kind == "sqrt" else ZERO
-        sign, kind = _RATES[self.kind]
-        return slope * generator(kind, self.argument) * sign
+        if slope.is_zero:
+            return ZERO
+        if self.kind in KINDS:
+            sign, kind = _RATES[self.kind]
+            return slope * generator(kind, self.argument) * sign
+        return slope * _slope(self.kind, self.argument)
 
     def moved(self, values: Mapping[str, Scalar]) -> Scalar:
         """Return the function with symbols substituted in its argument."""
@@ -95,6 +97,9 @@ _RATES = {"exp": (1, "exp"), "sin": (1, "cos"), "cos": (-1, "sin"), "sinh": (1, 
 #: The functions that move with time, beside roots; and those that are quotients of two of them.
 KINDS = frozenset(_RATES)
 QUOTIENTS = {"tan": ("sin", "cos"), "tanh": ("sinh", "cosh")}
+#: The inverse functions, and those that are smooth in pieces.
+INVERSES = frozenset(("log", "asin", "acos", "atan"))
+PIECES = frozenset(("abs", "sign"))
 
 
 def function_named(name: str) -> Function | None:
@@ -108,12 +113,23 @@ def generator(kind: str, argument: Scalar) -> Scalar:
 
 
 def function(kind: str, argument: Scalar) -> Scalar:
-    """Return kind(argument), of the argument's normal form, with a positive leading coefficient for even and odd ones."""
+    """Return kind(argument), of the argument's normal form, with a positive leading coefficient for even and odd ones.
+
+    Raises ZeroDivisionError for a number that the function is not defined at.
+    """
     argument = normal_form(argument)
     if kind in QUOTIENTS:
         return function(QUOTIENTS[kind][0], argument) / function(QUOTIENTS[kind][1], argument)
+    if kind in INVERSES:
+        return _inverse(kind, argument)
+    if kind in PIECES:
+        return _piece(kind, argument)
     if argument.is_zero:
         return ONE if kind in {"exp", "cos", "cosh"} else ZERO
+    if kind == "exp" and (undone := _undone(argument, {"log"})) is not None and not undone[0]:
+        return undone[1].argument ** undone[2]
+    if kind in {"cos", "sin"} and (undone := _undone(argument, {"asin", "acos", "atan"})) is not None:
+        return _of_inverse(kind, *undone)
     if kind in {"cos", "sin"} and argument.names == {PI} and (argument / Scalar.symbol(PI)).is_constant:
         turns = (argument / Scalar.symbol(PI)).fraction()
         return _cosine(turns if kind == "cos" else turns - Fraction(1, 2))
@@ -122,6 +138,98 @@ def function(kind: str, argument: Scalar) -> Scalar:
     if kind == "exp" or not leads_with_minus(argument):
         return generator(kind, argument)
     return generator(kind, -argument) * (-1 if kind in {"sin", "sinh"} else 1)
+
+
+def _slope(kind: str, argument: Scalar) -> Scalar:
+    """Return the derivative of a root, an inverse function or a piecewise one by its argument."""
+    match kind:
+        case "sqrt":
+            return 1 / (2 * generator(kind, argument))
+        case "log":
+            return 1 / argument
+        case "atan":
+            return 1 / (1 + argument * argument)
+        case "asin" | "acos":
+            return (1 if kind == "asin" else -1) / root_of(1 - argument * argument)
+        case "abs":
+            return function("sign", argument)
+    return ZERO
+
+
+def _inverse(kind: str, argument: Scalar) -> Scalar:
+    """Return an inverse function: a multiple of π where a table has it, asin and atan odd, acos(−x) = π − acos x."""
+    if kind == "log":
+        own = function_named(next(iter(argument.names))) if len(argument.names) == 1 else None
+        if own is not None and own.kind == "exp" and argument == own.value:
+            return own.argument
+        if argument.is_constant and argument.fraction() <= 0:
+            raise ZeroDivisionError(f"log({argument}) has no real value")
+        return ZERO if argument.is_one else generator(kind, argument)
+    if kind != "atan" and argument.is_constant and abs(argument.fraction()) > 1:
+        raise ZeroDivisionError(f"{kind}({argument}) has no real value")
+    pi = Scalar.symbol(PI)
+    for turns, (front, radicand) in _COSINES.items():
+        for sign in (1, -1):
+            cosine = square_root(Scalar.of(radicand)) * front * sign
+            angle = turns if sign > 0 else 1 - turns
+            if kind != "atan" and cosine == argument:
+                return pi * (angle if kind == "acos" else Fraction(1, 2) - angle)
+            if kind == "atan" and turns < Fraction(1, 2) and argument == _sine(turns) * sign / (cosine * sign):
+                return pi * turns * sign
+    if not leads_with_minus(argument):
+        return generator(kind, argument)
+    return pi - generator(kind, -argument) if kind == "acos" else -generator(kind, -argument)
+
+
+def _sine(turns: Fraction) -> Scalar:
+    """Return sin(π r)."""
+    return _cosine(turns - Fraction(1, 2))
+
+
+def _piece(kind: str, argument: Scalar) -> Scalar:
+    """Return |x| or the sign of x: of a number its value, of others with a positive leading coefficient."""
+    if argument.is_constant:
+        number = argument.fraction()
+        return Scalar.of(abs(number) if kind == "abs" else (number > 0) - (number < 0))
+    if not leads_with_minus(argument):
+        return generator(kind, argument)
+    return generator(kind, -argument) * (1 if kind == "abs" else -1)
+
+
+def root_of(radicand: Scalar) -> Scalar:
+    """Return √radicand as one generator where a square of letters would stand before it, whose sign is not known here."""
+    _, factors = radicand.factors()
+    if any(abs(power) > 1 for _, power in factors):
+        return generator("sqrt", radicand)
+    return square_root(radicand)
+
+
+def _undone(argument: Scalar, kinds: set[str]) -> tuple[Fraction, Function, int] | None:
+    """Return (r, f, m) of π r + m f, with an inverse function f of one of the kinds and an integer m; else None."""
+    found = [f for name in argument.names if (f := function_named(name)) is not None and f.kind in kinds]
+    if len(found) != 1 or not argument.denominator.is_constant or argument.names - {found[0].name, PI}:
+        return None
+    rest, times = argument, partial(argument, found[0].name)
+    rest = (argument - times * found[0].value) / Scalar.symbol(PI)
+    if not (times.is_constant and times.fraction().denominator == 1 and rest.is_constant):
+        return None
+    return rest.fraction(), found[0], int(times.fraction())
+
+
+def _of_inverse(kind: str, turns: Fraction, inner: Function, times: int) -> Scalar:
+    """Return cos or sin of π r + m f, from cos f and sin f."""
+    x = inner.argument
+    if inner.kind == "atan":
+        c, s = 1 / root_of(1 + x * x), x / root_of(1 + x * x)
+    else:
+        other = root_of(1 - x * x)
+        c, s = (x, other) if inner.kind == "acos" else (other, x)
+    if times < 0:
+        s = -s
+    real, imaginary = _cosine(turns), _sine(turns)
+    for _ in range(abs(times)):
+        real, imaginary = normal_form(real * c - imaginary * s), normal_form(real * s + imaginary * c)
+    return real if kind == "cos" else imaginary
 
 
 def _cosine(turns: Fraction) -> Scalar:
@@ -145,6 +253,8 @@ def square_root(radicand: Scalar) -> Scalar:
 
     Raises ZeroDivisionError, as for any value that means nothing here, where the radicand is a negative number.
     """
+    if radicand.is_zero:
+        return ZERO
     unit, factors = radicand.factors()
     number = unit.fraction() if unit.is_constant else None
     if number is not None and number < 0 and all(power % 2 == 0 for _, power in factors):

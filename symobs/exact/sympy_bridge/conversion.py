@@ -159,7 +159,8 @@ def _generator(name: str, objects: dict[str, Any]) -> sympy.Expr:
         return _power_of(found, objects)
     if isinstance(found, RealRoot):
         return sympy.CRootOf(scalar_to_sympy(found.argument), found.number.index)
-    return getattr(sympy, found.kind)(scalar_to_sympy(found.argument, objects))
+    kind = "Abs" if found.kind == "abs" else found.kind
+    return getattr(sympy, kind)(scalar_to_sympy(found.argument, objects))
 
 
 def _power_of(found: PowerOf, objects: dict[str, Any]) -> sympy.Expr:

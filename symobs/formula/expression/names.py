@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 #: The declared names; None declares every well-formed name.
 Names: TypeAlias = "Mapping[str, object] | None"
 FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "sinh", "cosh", "tanh")
+#: Functions of nonlinear plants alone, as they are typed: names of them may be symbols elsewhere.
+NONLINEAR = {name: name for name in ("log", "asin", "acos", "atan", "abs", "sign")}
+NONLINEAR |= {"ln": "log", "arcsin": "asin", "arccos": "acos", "arctan": "atan", "sgn": "sign"}
 RESERVED = ("oo", "inf", "nan", "pi")
 IMAGINARY = ("i", "j", "I")
 LONGEST_NAME = 64
@@ -78,7 +81,7 @@ class Scope:
     """The names, the budget and the context of the texts of one call.
 
     In a `polynomial` an undeclared λ or p may be its variable.  In `poles` an undeclared j2 is 2 j, unless it is one of the
-    `letters` that are in use.
+    `letters` that are in use.  In a `nonlinear` plant more functions are read.
     """
 
     names: Names
@@ -90,6 +93,7 @@ class Scope:
     roots: bool = False
     poles: bool = False
     polynomial: bool = False
+    nonlinear: bool = False
     letters: frozenset[str] = frozenset()
 
     @staticmethod

@@ -68,15 +68,18 @@ def parse_scalar(
     where: str = "",
     functions: bool = False,
     rounding: bool = False,
+    nonlinear: bool = False,
 ) -> Scalar:
     """Return the real value of a text, an int, a Fraction or a Decimal.
 
     `names` are the declared names, None for any; `variable` (s, z or t) is known besides them; with `functions`, exp,
-    sin, cos, sinh, cosh and sqrt of real arguments are read as generators; with `rounding` decimals are (`exact.as_printed`).
+    sin, cos, sinh, cosh and sqrt of real arguments are read as generators, with `nonlinear` log, asin, acos, atan, abs and
+    sign, too; with `rounding` decimals are (`exact.as_printed`).
     Raises ExpressionError for what is no expression, UnknownName, BudgetExceeded, InexactInput for a float, and
     InputError for any other type; all name the place `where`.
     """
     scope = Scope.of(names, variable, where, functions=functions, rounding=rounding)
+    scope = replace(scope, nonlinear=nonlinear)
     return _real(_entry(value, scope, where), where)
 
 
@@ -88,14 +91,17 @@ def parse_matrix(
     where: str = "",
     functions: bool = False,
     rounding: bool = False,
+    nonlinear: bool = False,
     beside: Sequence[object] = (),
 ) -> Matrix:
     """Return the matrix of a MATLAB-style text (`[1 0; 0 1]`) or of nested lists of int, Fraction and text.
 
-    The values stand in one context with those of the texts `beside` it, which need not be carried over then.
+    The values stand in one context with those of the texts `beside` it, which need not be carried over then.  In a
+    `nonlinear` plant log, asin, acos, atan, abs and sign are read.
     Raises as `parse_scalar` does, and ShapeMismatch where rows differ in length or no entry is there.
     """
     scope = Scope.of(names, variable, where, functions=functions, rounding=rounding)
+    scope = replace(scope, nonlinear=nonlinear)
     if _is_of_numbers(value):
         return matrix_of_numbers(value)
     if beside:

@@ -22,6 +22,7 @@ from symobs.formula.expression.names import (
     LONGEST_NAME,
     MINUS,
     NAME,
+    NONLINEAR,
     PRINTED_NAME,
     SUPERSCRIPTS,
     Scope,
@@ -442,6 +443,8 @@ class Tokeniser:
         ):
             self._add("FUNCTION", "exp", at)
             self.ahead = power.end()
+        elif called and self.scope.nonlinear and name in NONLINEAR and not self.scope.declares(name):
+            self._add("FUNCTION", NONLINEAR[name], at)
         elif name not in FUNCTIONS:
             self._add("VALUE", name, at, self.symbols.get(name) or self._symbol(name, at, called=called))
         elif called:

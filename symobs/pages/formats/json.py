@@ -11,6 +11,7 @@ from symobs.exact import Matrix
 from symobs.exact.numerals.written_digits import DATA_DIGITS
 from symobs.formula.convention import STANDARD, Convention
 from symobs.pages.page.sheet import decimal_of
+from symobs.system.motion import with_primes
 from symobs.tasks.result import Case, Result, output_format
 from symobs.tasks.result.in_convention import ResultInConvention
 from symobs.tasks.result.output_methods import signs, to_json
@@ -154,9 +155,14 @@ def _plant_object(plant: StateSpace) -> dict[str, Any]:
         present = {"A": True, "B": m.has_input, "C": m.has_output, "D": m.has_input and m.has_output}
         data = {name: to_json(getattr(m, name)) for name, is_there in present.items() if is_there}
     if (given := plant.nonlinear) is not None:
+        data = data if given.equilibrium else {}  # it is not linearised
         functions = {"f": to_json(given.f)} | ({} if given.h is None else {"h": to_json(given.h)})
-        point = {name: str(value) for name, value in given.equilibrium}
-        data |= {**functions, "states": [*given.states], "inputs": [*given.inputs], "equilibrium": point}
+        named = with_primes if given.motion is not None else str
+        point = {named(name): str(value) for name, value in given.equilibrium}
+        states = [named(name) for name in given.states]
+        data |= {**functions, "states": states, "inputs": [*given.inputs], "equilibrium": point}
+        if given.motion is not None:
+            data["rates"] = {named(name): name for name in given.states if named(name) != name}
     dt = plant.dt if isinstance(plant.dt, int) else str(plant.dt)
     data |= {"rounded_to": DATA_DIGITS} if plant.is_rounded else {}
     return {**data, "dt": dt, "symbols": signs(plant, [plant.polynomial])}

@@ -30,6 +30,7 @@ FRONT_BITS = 200
 #: A function of time as a monomial: (name, exponent), the exponentials apart from the rest.
 Part = tuple[tuple[str, int], ...]
 _RANK = {"exp": 1, "cosh": 2, "sinh": 3, "cos": 4, "sin": 5, "RootSum": 6}
+_RANK |= {"log": 5, "asin": 5, "acos": 5, "atan": 5, "abs": 5, "sign": 5}
 _RANK |= {"power": 7, "re": 8, "im": 9, "KroneckerDelta": 10}
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, rank
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop
+from symobs.exact.algebraic.root_loci import landmarks
 from symobs.exact.floating.riccati_check import Regulator, excess, is_proved
 from symobs.formula.tree import (
     Apply,
@@ -194,6 +195,23 @@ def has_margins(said: SentenceContext, closed: str, opened: str) -> bool:
     told = {name: slot.value for name, slot in said.slots.items() if isinstance(slot, Decimals)}
     right = {name: None if text is None else Scalar.of(Fraction(text)) for name, text in found.items()}
     return told == right and told.keys() == said.slots.keys() and is_value(here, "stable", Letter(closed))
+
+
+def is_on_locus(said: SentenceContext, kind: str, opened: str, moved: str) -> bool:
+    """Return whether the numbers told are those of a landmark of the root locus p + k q."""
+    here = said.environment
+    p, q = (as_scalar(evaluate(Letter(name), here, Exact(here))) for name in (opened, moved))
+    told = {name: as_scalar(slot.value).fraction() for name, slot in said.slots.items() if isinstance(slot, Decimals)}
+    return told.keys() == said.slots.keys() and told in landmarks(kind, p, q, here.variable)
+
+
+def has_asymptotes(said: SentenceContext, opened: str, moved: str) -> bool:
+    """Return whether n − m and (Σ poles − Σ zeros)/(n − m) are told of p + k q."""
+    here = said.environment
+    p, q = (as_scalar(evaluate(Letter(n), here, Exact(here))).coefficients(here.variable) for n in (opened, moved))
+    sums = [-c[1] / c[0] if len(c) > 1 else Scalar.of(0) for c in (p, q)]
+    excess = len(p) - len(q)
+    return said.slots["excess"] == str(excess) and said.told("centroid").value * excess == sums[0] - sums[1]
 
 
 def are_minors(said: SentenceContext, of: str) -> bool:

@@ -8,6 +8,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import all_roots, substitute
 from symobs.formula.tree import At, Block, Derivative, Letter, Literal, SymbolList
 from symobs.proof.derivation.builder import relation
+from symobs.tasks.analysis.motion_page import state_motion
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -16,6 +17,25 @@ if TYPE_CHECKING:
     from symobs.formula.tree.term import Term
     from symobs.proof.derivation.builder import Builder
     from symobs.system.reading import Nonlinear
+
+#: Partial derivatives of more terms are not written out before the equilibrium is inserted.
+_LONGEST = 8
+
+
+def state_nonlinear(page: Builder, given: Nonlinear, *further: Matrix | Scalar) -> None:
+    """State the equations of motion, and f and h; `further` values of the same functions may follow."""
+    if given.motion is not None:
+        state_motion(page, given.motion)
+    functions = [function for function in (given.f, given.h) if function is not None]
+    page.in_time(*functions, *further)
+    time = "discrete" if page.plant.is_discrete else "continuous"
+    states, arguments = SymbolList(given.states), SymbolList((*given.states, *given.inputs))
+    page.remark(f"nonlinear_{'state_' if given.h is None else ''}{time}", states=states, arguments=arguments)
+    page.assume_positive(_radicands(given, functions))
+    shown = [relation(page.set("f_x", given.f), given.f)]
+    if given.h is not None:
+        shown.append(relation(page.set("h_x", given.h), given.h))
+    page.given(*shown)
 
 
 def state_linearisation(page: Builder) -> None:
@@ -28,18 +48,14 @@ def state_linearisation(page: Builder) -> None:
         given.jacobian(function, names) for function in functions for names in (given.states, given.inputs) if names
     ]
     moved = [_at_equilibrium(given, function) for function in (*functions, *jacobians)]
-    page.in_time(*functions, *moved, *(value for _, value in given.equilibrium), m.A, m.B, m.C, m.D)
-    time = "discrete" if plant.is_discrete else "continuous"
-    states, arguments = SymbolList(given.states), SymbolList((*given.states, *given.inputs))
-    page.remark(f"nonlinear_{'state_' if given.h is None else ''}{time}", states=states, arguments=arguments)
-    page.assume_positive(_radicands(given, functions))
-    f = page.set("f_x", given.f)
-    shown = [relation(f, given.f)]
-    if given.h is not None:
-        shown.append(relation(page.set("h_x", given.h), given.h))
-    page.given(*shown)
+    state_nonlinear(page, given, *moved, *(value for _, value in given.equilibrium), m.A, m.B, m.C, m.D)
+    page.assume_positive(given.positive)
+    f, time = page["f_x"], "discrete" if plant.is_discrete else "continuous"
     rest = Matrix.of([[dict(given.equilibrium)[name] if plant.is_discrete else Scalar.of(0)] for name in given.states])
-    page.equal(relation(_there(page, given, f.formula), rest), say=f"equilibrium_{time}")
+    at_rest = f.formula
+    for name, there in given.equilibrium:
+        at_rest = At(at_rest, name, there)
+    page.equal(relation(page.term(at_rest), rest), say=f"equilibrium_{time}")
     lines = []
     for letter, function, name in (("A", given.f, "f_x"), ("C", given.h, "h_x")):
         for matrix, names in ((letter, given.states), ({"A": "B", "C": "D"}[letter], given.inputs)):
@@ -48,8 +64,9 @@ def state_linearisation(page: Builder) -> None:
                 continue
             jacobian = given.jacobian(function, names)
             page.set(matrix, value)
-            columns = _there(page, given, _columns(name, jacobian, names))
-            between = [] if jacobian == value else [_there(page, given, Literal(jacobian))]
+            columns = _there(page, given, partial_derivatives(name, jacobian, names))
+            is_told = jacobian != value and max(entry.size for entry in jacobian.entries) <= _LONGEST
+            between = [_there(page, given, Literal(jacobian))] if is_told else []
             lines.append(relation(page[matrix], columns, *between, value))
     page.equal(*lines, say="linearised")
 
@@ -67,7 +84,7 @@ def _radicands(given: Nonlinear, functions: Sequence[Matrix]) -> list[Scalar]:
     return [root.argument for root in found]
 
 
-def _columns(name: str, jacobian: Matrix, names: Sequence[str]) -> Formula:
+def partial_derivatives(name: str, jacobian: Matrix, names: Sequence[str]) -> Formula:
     """Return the row of the partial derivatives; one by what does not occur is written as 0."""
     columns = [Matrix.of([[entry] for entry in column]) for column in zip(*jacobian.rows, strict=True)]
     parts = [
@@ -80,5 +97,6 @@ def _columns(name: str, jacobian: Matrix, names: Sequence[str]) -> Formula:
 def _there(page: Builder, given: Nonlinear, formula: Formula) -> Term:
     """Return a formula at the equilibrium."""
     for name, value in given.equilibrium:
-        formula = At(formula, name, value)
+        if name not in given.free:
+            formula = At(formula, name, value)
     return page.term(formula)

@@ -166,9 +166,13 @@ def given(
         if plant.origin is not None:
             state_transfer_function(page)
         if plant.nonlinear is not None:
-            from symobs.tasks.analysis.linearisation_page import state_linearisation  # noqa: PLC0415 - of such plants alone
+            from symobs.tasks.analysis import linearisation_page  # noqa: PLC0415 - of such plants alone
 
-            state_linearisation(page)
+            if not plant.nonlinear.equilibrium:
+                linearisation_page.state_nonlinear(page, plant.nonlinear)
+                state_signs(page)
+                return
+            linearisation_page.state_linearisation(page)
         page.set("A", m.A)
         relations = []
         rate = _as_given(page, m.A) @ page["x"]

@@ -113,6 +113,7 @@ def _of_plants(function: Callback) -> Callback:
                 raise InputError(message, where=f"specification.{name}", repair="write it in quotes")
         came = {name: value for name, value in keywords.items() if name != "plant" and value is not None}
         plant = arguments[0] if arguments else keywords.get("plant")
+        _require_equilibrium(plant, function.__name__)
         known = plant if isinstance(plant, StateSpace) else None
         came = {name: as_typed(name, kinds.get(name, ""), value, known) for name, value in came.items()}
         asked = {name: read_floats(value, floats, f"specification.{name}") for name, value in came.items()}
@@ -127,6 +128,14 @@ def _of_plants(function: Callback) -> Callback:
         return result.specified(asked)
 
     return reading  # type: ignore[return-value]
+
+
+def _require_equilibrium(plant: Any, name: str) -> None:
+    """Refuse a nonlinear plant that is not linearised, but for the question where it rests."""
+    nonlinear = getattr(plant, "nonlinear", None)
+    if nonlinear is not None and not nonlinear.equilibrium and name != "equilibria":
+        message = f"{name} is about a linearisation, and this plant has no equilibrium that was chosen"
+        raise InputError(message, where="plant.equilibrium", repair="give one to symobs.linearize")
 
 
 def _asked_anew(plant: Any) -> Any:

@@ -201,7 +201,7 @@ class Result(TaskTraits):
         divisors = [*_denominators([m.A, m.B, m.C, m.D]), *self.plant.apart]
         divisors += [] if self.plant.is_stratum else self.plant.nonzero
         divisors += _denominators(self.further_data)
-        return tuple(nonzero("domain", vanishing_factors(divisors, self.plant.symbols.signs)))
+        return (*nonzero("domain", vanishing_factors(divisors, self.plant.symbols.signs)), *self.plant.exists_where)
 
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:

@@ -10,7 +10,7 @@ PHRASES: dict[str, str] = {
     "picture_line": "Thick intervals: stable values of {parameter}, endpoints excluded.",
     "picture_line_everywhere": "All values of {parameter} shown are stable.",
     "picture_line_nowhere": "No value of {parameter} shown is stable.",
-    "picture_poles": "Root locus: the poles move from the crosses to the circles as {parameter} varies from {begin} to {end}.",
+    "picture_poles": "The roots move from the crosses, where {parameter} is {begin}, the lower end of what is drawn, to the circles, where it is {end}, the upper end.",
     "picture_half_plane": "Shaded half-plane: {where}.",
     "picture_disc": "The shaded disc has radius {radius}.",
     "picture_samples": "Dots: stable test points; crosses: unstable ones.",

@@ -65,7 +65,11 @@ def write_region(page: Builder, result: StabilityRegion) -> None:
 
 
 def write_line(page: Builder, result: StabilityRegion, chi: str) -> None:
-    """Write where a polynomial with one parameter is stable, without Routh's table."""
+    """Write where a polynomial is stable as one parameter moves, without Routh's table where there are no other symbols."""
+    if result.region is None:
+        _table(page, result, chi)
+        _conditions(page, result, chi)
+        return
     if result.critical.proper:
         _crossing(page, result, chi)
     _region(page, result, chi, chi)

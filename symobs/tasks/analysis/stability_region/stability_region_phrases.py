@@ -50,7 +50,7 @@ PHRASES: dict[str, str] = {
     "curve_missing": "The curve {curve} is excluded, although the region lies on both sides of part of it.",
     "number_is_root": "Here {number} is {which} of {equation}.",
     "numbers_are_roots": "Here {number} and {other} are the only real roots of {equation} and {another}.",
-    "poles_move": "The root locus for increasing {names}.",
+    "poles_move": "The roots for increasing {names}, from the lower to the upper end of what is drawn.",
     "parts_are": "Solving for the parameters gives",
 }
 

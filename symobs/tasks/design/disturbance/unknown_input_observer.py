@@ -33,6 +33,7 @@ from symobs.tasks.design.gain.gain_cases import design_of, places_beside
 from symobs.tasks.design.gain.gain_design import OBSERVER, letters_of
 from symobs.tasks.design.gain.gain_page import say_as_required
 from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
+from symobs.tasks.design.gain.structured_gain_page import write_structured
 from symobs.tasks.design.named_gains import define_gain
 from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.unassignable import say_unassignable
@@ -466,6 +467,9 @@ def _gain(page: Builder, design: UnknownInputObserver) -> None:
     assert design.inner is not None  # noqa: S101 - there is a gain
     whole = page["A_T"], page["C"]
     terms, say = small_gain_terms(page, design.inner, OBSERVER, *whole)
+    if not terms and design.inner.pair.is_observable and page.plant.outputs > 1:
+        found = write_structured(page, OBSERVER, design.answer["L"], *whole, page["phi_o"], lambda L: page.set("L", L))
+        say = "gain_follows" if found else say
     L = define_gain(page, "L", *terms, design.answer["L"], say=say or "uio_gain")
     compare_with_simple(page, design.inner, OBSERVER, *whole)
     state = page("A_T - {L} C", L=L)

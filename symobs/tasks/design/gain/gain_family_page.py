@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from symobs.exact import EIGENVALUE, Factored, Matrix, Scalar, companion, rank, roots_of
+from symobs.exact import EIGENVALUE, Matrix, Scalar, companion, roots_of
 from symobs.formula.phrases.languages import Counted
 from symobs.formula.tree import Roots
 from symobs.proof.derivation import CaseStep, Note
@@ -13,8 +13,6 @@ from symobs.stability.criteria.stability import monic
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import (
     determinant_form,
-    formula_of_factored,
-    letters_apart_from_data,
     stratum_of,
     undecided,
 )
@@ -22,7 +20,8 @@ from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_design import GainDesign
 from symobs.tasks.design.gain.gain_kind import AlgebraicGain, SmallGain
 from symobs.tasks.design.gain.small_gain_page import compare_with_simple, say_why_simple, small_gain_terms
-from symobs.tasks.design.named_gains import define_gain, entry_letters, gain_letters
+from symobs.tasks.design.gain.structured_gain_page import write_structured
+from symobs.tasks.design.named_gains import define_gain
 from symobs.tasks.design.pole_placement.sylvester import Sylvester, charts_of
 
 if TYPE_CHECKING:
@@ -46,7 +45,12 @@ def write_sylvester(page: Builder, design: GainDesign, side: PlacementProblem, d
         compare_with_simple(page, design, side, *_pair(page, side))
         page.remark(f"others_{side.kind}", count=str(_freedom(design)))
         return
-    if chart is not None and design.page_method != "sylvester" and _write_structured(page, design, side):
+    if (
+        chart is not None
+        and design.page_method != "sylvester"
+        and not design.decoupled
+        and _structured(page, design, side)
+    ):
         page.remark(f"others_{side.kind}", count=str(len(chart.names)))
         return
     if chart is None and design.dual_pair(page.plant).c.shape[0] > 1:  # whether the rows of G are free is not known
@@ -93,65 +97,15 @@ def _pair(page: Builder, side: PlacementProblem) -> tuple[Term, Term]:
     return page["A"], page["C" if side.is_dual else "B"]
 
 
-def _write_structured(page: Builder, design: GainDesign, side: PlacementProblem) -> bool:
-    """Write a gain factor by factor, where the polynomial with letters for its entries splits so; return whether it does."""
-    value, variable = design.answer[side.gain], page.plant.variable
-    letters = entry_letters(page, side.gain, value, _is_zero)
-    names = letters.names - value.names
-    m = page.plant.matrices
-    moved = letters @ m.C if side.gain == "L" else m.B @ letters
-    polynomial = (m.A - moved).characteristic_polynomial(variable)
-    parts = [(monic(factor, variable), power) for factor, power in polynomial.factors()[1]]
-    desired = design.desired
-    if design.decoupled or desired is None or page[side.phi].value != desired.polynomial:
+def _structured(page: Builder, design: GainDesign, side: PlacementProblem) -> bool:
+    """Write the gain factor by factor where that is possible; return whether it is."""
+    value, phi = design.answer[side.gain], page[side.phi]
+    if design.desired is None or phi.value != design.desired.polynomial:
         return False
-    if not names or sum(len(factor.names & names) for factor, _ in parts) != len(names):
+    if not write_structured(page, side, value, *_pair(page, side), phi):
         return False
-    if not all(power == 1 and _is_solved_by_comparison(factor, names, variable) for factor, power in parts):
-        return False
-    gain = page.define(side.gain, gain_letters(page, side.gain, value, _is_zero), say="structured_gain")
-    closed = side.closed_loop_matrix(page)
-    page.equal(relation(closed, letters_apart_from_data(page, closed.value)))
-    factors = Factored(Scalar.of(1), tuple(parts))
-    page.equal(
-        relation(side.error_determinant(page), page.term(formula_of_factored(factors))), say="polynomial_of_unknown"
-    )
-    found = dict(zip(map(str, gain.value.entries), value.entries, strict=True))
-    meanings = {name: found[name] for name in names}
-    wanted = [factor.substitute(meanings) for factor, _ in parts]
-    if len(parts) > 1:
-        asked = Factored(Scalar.of(1), tuple((factor, 1) for factor in wanted))
-        page.equal(
-            page.line(f"{side.phi} = {{value}}", value=page.term(formula_of_factored(asked))), say="structured_wish"
-        )
-    pairs = [
-        pair
-        for (factor, _), wish in zip(parts, wanted, strict=True)
-        for pair in zip(factor.coefficients(variable), wish.coefficients(variable), strict=True)
-    ]
-    lines = [relation(have, want) for have, want in pairs if have.names & names]
-    page.equal(*lines, say="equal_factors" if len(parts) > 1 else "equal_coefficients")
     define_gain(page, side.gain, value, say="gain_follows")
     return True
-
-
-def _is_zero(entry: Scalar) -> bool:
-    return entry.is_zero
-
-
-def _is_solved_by_comparison(factor: Scalar, names: frozenset[str], variable: str) -> bool:
-    """Return whether the coefficients of a monic polynomial are linear in letters and determine them."""
-    inside = sorted(factor.names & names)
-    coefficients = factor.coefficients(variable)
-    if any(sum(power for name, power in term if name in names) > 1 for c in coefficients for _, term in c.terms()):
-        return False
-    if any(c.denominator.names & names for c in coefficients):
-        return False
-    nothing = dict.fromkeys(inside, Scalar.of(0))
-    slopes = [
-        [c.substitute({**nothing, name: Scalar.of(1)}) - c.substitute(nothing) for name in inside] for c in coefficients
-    ]
-    return not inside or rank(Matrix.of(slopes)) == len(inside)
 
 
 def write_hidden_family(page: Builder, design: GainDesign, side: PlacementProblem) -> None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Factored, Matrix, RealNumber, Scalar, transfer
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
+from symobs.exact.algebraic.nyquist import nyquist
 from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
 from symobs.formula.tree import Decimals, Environment
 from symobs.ground.dataclass import dataclass
@@ -108,7 +109,7 @@ class Margins(Result):
         if self.design is not None and own is not None:
             values["A_c"] = self.design.fields[own]
         if self.written is not None:
-            values |= {"B": m.B, "C": m.C, "D": m.D, "F": self.written.value, "q": _monic(self.written)[1]}
+            values |= {"B": m.B, "C": m.C, "D": m.D, "F": self.written.value, "q": monic(self.written)[1]}
         e = Environment(variable=plant.variable, values=values)
         whole = e["A"].pencil.apply("det")
         if self.design is not None:
@@ -134,6 +135,11 @@ class Margins(Result):
     @property
     def _coefficients(self) -> list[list[Fraction]]:
         return [[*numbers(self.answer[name], self.plant.variable)] for name in ("closed", "opened")]
+
+    @property
+    def _is_rational(self) -> bool:
+        entries = (c for name in ("closed", "opened") for c in self.answer[name].coefficients(self.plant.variable))
+        return all(entry.is_constant for entry in entries)
 
     @property
     def _slowest(self) -> RealNumber:
@@ -171,6 +177,8 @@ class Margins(Result):
         """The margins: ends and slowest exactly, the others as decimals in texts; and the polynomials."""
         found: dict[str, Any] = {name: _written(self.answer[name]) for name in MARGINS}
         found |= {"closed_loop_polynomial": self.answer["closed"], "open_loop_polynomial": self.answer["opened"]}
+        if self.answer["closed"] is not None and self._is_rational:
+            found |= nyquist(self.answer["closed"], self.answer["opened"], self.plant.variable)
         return found | ({"question": self.answer["open"]} if self.answer["open"] else {})
 
     def __getattr__(self, name: str) -> Any:
@@ -275,22 +283,24 @@ def _plain(value: Any) -> Scalar:
     return found
 
 
-def _monic(controller: WrittenTransferFunction) -> tuple[Scalar, Scalar]:
+def monic(controller: WrittenTransferFunction) -> tuple[Scalar, Scalar]:
     """Return numerator and denominator, the lead of the denominator 1; nothing is cancelled."""
     lead = controller.below.coefficients(controller.variable)[0]
     return controller.above / lead, controller.below / lead
 
 
-def _loop_of_controller(plant: StateSpace, controller: WrittenTransferFunction) -> tuple[Scalar, Scalar]:
-    """Return P + N and P of F G; raises `InputError` where that is not strictly proper."""
+def loop_of_controller(
+    plant: StateSpace, controller: WrittenTransferFunction, *, proper: bool = False
+) -> tuple[Scalar, Scalar]:
+    """Return P + N and P of F G; raises `InputError` where that is not strictly proper, or with `proper` not proper."""
     m, where = plant.matrices, "specification.controller"
     if (plant.inputs, plant.outputs) != (1, 1):
         message = f"a loop with a controller has one input and one output, the plant {plant.inputs} and {plant.outputs}"
         raise InputError(message, where=where, repair="give a plant with one of each")
-    above, below = _monic(controller)
+    above, below = monic(controller)
     numerator, chi = transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable)
     opened, moved = chi * below, numerator * above
-    if not moved.is_zero and moved.degree(plant.variable) >= opened.degree(plant.variable):
+    if not moved.is_zero and moved.degree(plant.variable) >= opened.degree(plant.variable) + proper:
         raise _not_proper(where, "give a controller with a pole more")
     return opened + moved, opened
 
@@ -334,6 +344,8 @@ def margins(
     Returns gain_down and gain_up, the ends of the interval around 1 of the gains that keep the loop stable, and slowest, the
     largest real part (modulus) of its poles, exactly; phase_deg, the smallest change of phase either way that does not,
     modulus, the smallest distance from −1, and peak, the largest |1/(1 + loop)|, to six certain digits after the point.
+    Where it is unstable, too: open_loop_unstable, encirclements (of −1, counterclockwise) and closed_loop_unstable,
+    axis_crossings (omega, value), gain_crossover, phase_crossover, and delay_margin, the least φ/ω.
     The verdict is `no` where the closed loop is not stable, `undecided` with symbols.  Raises `InputError` for several
     inputs or outputs, and for a loop with a gain at infinity.
     Source: S. Skogestad and I. Postlethwaite, Multivariable Feedback Control, 2nd ed., ch. 2.
@@ -349,7 +361,7 @@ def margins(
         plant.require("B", "C", task="margins")
         plant = plant.in_digits()
         written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
-        found: Result = chosen.solve(plant, None, written, _loop_of_controller(plant, written))
+        found: Result = chosen.solve(plant, None, written, loop_of_controller(plant, written))
         return found.asked(method)
     design = in_digits(_design(plant.knowing(*asked.values()), asked, observer))
     loop = None if design.verdict == "no" else loop_of(design)
@@ -431,7 +443,7 @@ def _polynomials(page: Builder, result: Margins) -> None:
     else:
         assert result.written is not None  # noqa: S101 - the other way to a loop
         page.define("F", factored_form(page, result.written.value), say="margins_controller", closing=False)
-        below = _monic(result.written)[1]
+        below = monic(result.written)[1]
         opened = opened if below.is_one else opened @ page.value(below)
     place = "output" if kind == "observer" else "input"
     page.define("chi_o", opened, page.value(result.answer["opened"]), say=f"margins_cut_{place}", closing=False)

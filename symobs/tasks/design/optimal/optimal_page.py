@@ -47,6 +47,9 @@ def write_optimal(page: Builder, result: OptimalGain) -> None:
     with page.section("optimal_feedback" if result.letter == "K" else "optimal_filter"):
         _tell_weights(page, result)
         _solve(page, result)
+        gain = next((name for name in ("L", "L_r") if result.letter == "L" and page.defines(name)), None)
+        if gain is not None:
+            _tell_filter(page, gain)
         page.steps += case_steps(page, result, _case)
 
 
@@ -245,15 +248,23 @@ def _is_controllable(result: OptimalGain) -> bool:
 
 def _tell_matching(page: Builder, result: OptimalGain) -> None:
     """Write the polynomial of the loop in unknown entries of the gain, and the gain."""
+    _tell_unknown(page, result)
+    letter = result.letter
+    page.define(letter, page.value(result.answer[letter]), say="optimal_matched_gain", answer=True, closing=False)
+
+
+def _tell_unknown(page: Builder, result: OptimalGain) -> bool:
+    """Write the polynomial of the loop in unknown entries of the gain, where their letters are free."""
     letter, order = result.letter, page.plant.order
     names = [f"{letter.lower()}{k + 1}" for k in range(order)]
     taken = {*page.plant.symbols.signs, *page.plant.field.names, *page.environment.coefficients}
-    if not taken & {*names}:
-        unknown = [Scalar.symbol(name) for name in names]
-        pencil = _pencil(page, result, page.value(Matrix.row(unknown) if letter == "K" else Matrix.column(unknown)))
-        shown = pencil.apply("det")
-        page.equal(relation(shown, shown.as_value), say="optimal_matched")
-    page.define(letter, page.value(result.answer[letter]), say="optimal_matched_gain", answer=True, closing=False)
+    if taken & {*names}:
+        return False
+    unknown = [Scalar.symbol(name) for name in names]
+    pencil = _pencil(page, result, page.value(Matrix.row(unknown) if letter == "K" else Matrix.column(unknown)))
+    shown = pencil.apply("det")
+    page.equal(relation(shown, shown.as_value), say="optimal_matched")
+    return True
 
 
 # -- digits ------------------------------------------------------------------------------------------------------------
@@ -262,8 +273,10 @@ def _tell_matching(page: Builder, result: OptimalGain) -> None:
 def _tell_digits(page: Builder, result: OptimalGain) -> None:
     """Write P and the gain in decimals: in so many that a box of the size of their last place is mapped into itself."""
     letter, digits = result.letter, result.decimals
+    is_matched = False
     if page.plant.order <= _DRAWN_UP_TO and _tell_root_square(page, result):
         _tell_locus(page, *_problem(page, result)[2:])
+        is_matched = _is_controllable(result) and _tell_unknown(page, result)
     tables = {f"{name}_r": [[Fraction(entry) for entry in row] for row in digits[name]] for name in ("P", letter)}
     largest = max(abs(entry) for table in tables.values() for row in table for entry in row)
     fewest = max(_DIGITS - len(str(int(largest))), 1)
@@ -274,12 +287,14 @@ def _tell_digits(page: Builder, result: OptimalGain) -> None:
         return
     near = {name: _rounded(table, unit) for name, table in tables.items()}
     shown = [relation(page.set(name, value), page.term(Decimals(value))) for name, value in near.items()]
-    page.equal(*shown, say="optimal_digits", answer=True)
+    page.equal(*shown, say="optimal_digits_matched" if is_matched else "optimal_digits", answer=True)
     kind = "feedback" if letter == "K" else "filter"
     radius = page.term(Decimals(Scalar.of(unit)))
     page.conclude(f"optimal_{kind}_enclosed", radius=radius)
     pencil, plant = _pencil(page, result, page[f"{letter}_r"]), page.plant
     chi = page.define(f"chi_{letter}", pencil.apply("det"), silent=True)
+    if is_matched:
+        page.equal(relation(pencil.apply("det"), _in_decimals(page, chi.scalar)), say="optimal_loop_polynomial")
     found = stability(as_scalar(chi.value), plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
     P, gain = near["P_r"], result.turned(near[f"{letter}_r"])
     bound = excess(result.regulator, P, gain, unit) if found.verdict == "yes" else None
@@ -287,6 +302,29 @@ def _tell_digits(page: Builder, result: OptimalGain) -> None:
         power = page.term(Power(Decimals(Scalar.of(10)), 1 - len(str(1 / bound))))
         told = {"radius": radius, "bound": power if bound < unit else page.term(Decimals(Scalar.of(bound)))}
         page.conclude(f"optimal_rounded_{kind}", predicate("stable", chi), **told)
+
+
+def _in_decimals(page: Builder, polynomial: Scalar) -> Term:
+    """Return a monic polynomial whose coefficients are decimals."""
+    variable = page.plant.variable
+    _, *rest = polynomial.coefficients(variable)
+    shown = page[f"{variable}^{len(rest)}"]
+    for power, c in zip(range(len(rest) - 1, -1, -1), rest, strict=True):
+        if not c.is_zero:
+            part = page.term(Decimals(Scalar.of(abs(c.fraction()))))
+            part = part @ page[f"{variable}^{power}" if power > 1 else variable] if power else part
+            shown = shown + part if c.fraction() > 0 else shown - part
+    return shown
+
+
+def _tell_filter(page: Builder, gain: str) -> None:
+    """Write x̂' = A x̂ + B u + L(y − C x̂)."""
+    m = page.plant.matrices
+    model = page["A x_hat + B u"] if m.has_input else page["A x_hat"]
+    error = page["y - C x_hat - D u"] if m.has_feedthrough else page["y - C x_hat"]
+    rate = model + page[gain] @ error
+    page.dynamics("x_hat", rate, silent=True)
+    page.remark("kalman_filter", law=relation(page["x_hat"].derivative, rate))
 
 
 def _is_enough(result: OptimalGain, tables: Mapping[str, list[list[Fraction]]], unit: Fraction) -> bool:

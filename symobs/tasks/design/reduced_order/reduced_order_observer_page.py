@@ -22,6 +22,7 @@ from symobs.tasks.design.full_order.observer import undetermined
 from symobs.tasks.design.gain.gain_design import OBSERVER
 from symobs.tasks.design.gain.gain_page import define_test_matrix, say_as_required
 from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
+from symobs.tasks.design.gain.structured_gain_page import is_held, write_structured
 from symobs.tasks.design.named_gains import define_gain, gain_letters
 from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.reduced_order.reduced_order_observer import DependentOutputs, ReducedOrderObserver, partition
@@ -222,7 +223,9 @@ def _parts(page: Builder, design: ReducedOrderObserver) -> None:
 
 def _observer(page: Builder, design: ReducedOrderObserver) -> None:
     """Write (4.37) and (4.38), the gain a matrix of unknowns."""
-    gain = page.set("L", gain_letters(page, "L", design.answer["L"])).value
+    several = page.plant.outputs > 1 and design.inner.fixed_polynomial.is_one
+    kept = is_held(page, OBSERVER, design.answer["L"], page["A_22"], page["A_12"]) if several else None
+    gain = page.set("L", gain_letters(page, "L", design.answer["L"], kept or (lambda _: False))).value
     x_2_hat = page["x_2_hat"]
     copy = page["A_21 x_1 + A_22 x_2_hat"]
     innovation = page["x_1' - A_11 x_1"]
@@ -294,6 +297,11 @@ def write_inner_gain(page: Builder, design: ReducedOrderObserver) -> None:
     rest = page["A_22"], page["A_12"]
     terms, say = small_gain_terms(page, design.inner, OBSERVER, *rest)
     key = say or ("one_of_several" if several else "hence_gain")
+    if several and not terms and design.inner.fixed_polynomial.is_one:
+        is_compared = write_structured(
+            page, OBSERVER, design.answer["L"], *rest, page["phi_o"], lambda L: page.set("L", L), "form_of_several"
+        )
+        key = "gain_follows" if is_compared else key
     key = key if design.inner.fixed_polynomial.is_one else ""
     define_gain(page, "L", *terms, design.answer["L"], say=key)
     compare_with_simple(page, design.inner, OBSERVER, *rest)

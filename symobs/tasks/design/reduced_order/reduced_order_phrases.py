@@ -29,6 +29,7 @@ PHRASES: dict[str, str] = {
     "with_unknown_gain": "With unknown entries of $L$, its characteristic polynomial is",
     "wanted_polynomial": "which is to be equal to the desired polynomial",
     "polynomial_is_to_be": "Its desired characteristic polynomial is",
+    "form_of_several": "With several outputs the gain is not unique. We look for one of the following form; beside it stands the matrix of the error equation:",
     "one_of_several": "With several outputs the gain is not unique. One with simple entries is",
     "compare": "Equating coefficients gives",
     "hence_gain": "hence",
@@ -70,6 +71,7 @@ DEMANDS: dict[str, str] = {
     "reduced_unassignable": "fixes A_12 A_22 N_2 X_2 phi_o",
     "reduced_not_unique": "fixes A_12 A_22 N_2 X_2 phi_o",
     "reduced_all_fixed": "fixes A_12 A_22 N_2 X_2 phi_o, exhausts A_12 A_22 N_2 X_2 phi_o",
+    "form_of_several": "not_unique A_12 A_22",
     "one_of_several": "not_unique A_12 A_22",
 }
 

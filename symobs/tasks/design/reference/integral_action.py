@@ -34,6 +34,7 @@ from symobs.tasks.design.gain.gain_cases import design_of, places_where
 from symobs.tasks.design.gain.gain_design import FEEDBACK, letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
 from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
+from symobs.tasks.design.gain.structured_gain_page import write_structured
 from symobs.tasks.design.named_gains import gain_letters
 from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.readability import OUTPUT_DERIVATIVE, UNKNOWN_ENTRIES
@@ -428,10 +429,14 @@ def _impossible(page: Builder, design: IntegralAction) -> None:
 def _gains(page: Builder, design: IntegralAction) -> None:
     """Write [K, −k_I] of the extended plant, and its parts."""
     plant, gain = page.plant, design.loop.answer["K"]
-    _K, _k_I = page.set("K", design.answer["K"]), page.set("k_I", design.answer["k_I"])
-    both, whole = page["[K, -k_I]"], (page["A_hat"], page["B_hat"])
+    _both(page, gain)
+    whole = page["A_hat"], page["B_hat"]
     compared = plant.inputs == 1 and design.fields["family"] is None and _compare(page, gain, design.desired)
     terms, say = small_gain_terms(page, design.loop, FEEDBACK, *whole)
+    if not terms and plant.inputs > 1 and design.loop.fixed_polynomial.is_one:
+        found = write_structured(page, FEEDBACK, gain, *whole, page["phi_c"], lambda K: _both(page, K))
+        say = "gain_follows" if found else say
+    both = _both(page, gain)
     page.equal(relation(both, *terms, gain), say=say or ("hence_gain" if compared else "integral_gains"))
     compare_with_simple(page, design.loop, FEEDBACK, *whole)
     page.equal("K = #", say="integral_parts", answer=True)
@@ -442,6 +447,14 @@ def _gains(page: Builder, design: IntegralAction) -> None:
     )
     if not design.desired.is_numeric:
         say_stability(page, page["det(pencil(A_hat) + B_hat [K, -k_I])"])
+
+
+def _both(page: Builder, gain: Matrix) -> Term:
+    """Let K and k_I be the parts of a gain of plant and integrator, and return [K, −k_I]."""
+    rows, order = range(gain.shape[0]), page.plant.order
+    page.set("K", gain.select(rows, range(order)))
+    page.set("k_I", -gain.select(rows, range(order, gain.shape[1])))
+    return page["[K, -k_I]"]
 
 
 def _compare(page: Builder, gain: Matrix, desired: DesiredPolynomial) -> bool:

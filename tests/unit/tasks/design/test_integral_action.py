@@ -33,3 +33,11 @@ def test_a_zero_at_the_origin_is_a_case_with_its_proof() -> None:
 def test_the_error_at_rest_is_no_matter_of_stability_that_was_shown(poles: str, said: str) -> None:
     found = symobs.integral_action(SERVO, poles=poles)
     assert said in found.to("latex")
+
+
+def test_the_gain_of_several_inputs_follows_from_its_equations() -> None:
+    """s² + 3s − 2k₃ = (s + 1)(s + 2) and s² + (k₁ + 2)s − k₂ = (s + 3)(s + 4), by hand."""
+    plant = symobs.StateSpace("[-2 1; 1 -3]", "[1 0; 0 2]", "[1 0; 0 1]")
+    page = text_of(symobs.integral_action(plant, poles="-1, -2, -3, -4"))
+    assert "-2k₃ = 2, k₁ + 2 = 7, -k₂ = 12" in page
+    assert "integrator together gives" not in page

@@ -342,3 +342,16 @@ def test_a_page_is_written_where_the_roots_of_a_case_are_too_many_beside_the_oth
     long = symobs.lqr(symobs.StateSpace("[a 1; 0 c]", "[0; 1]", dt=True, symbols=signs), Q="1", R="q")
     assert (long.verdict, long.K) == ("undecided", None)
     assert "too long" in long.question
+
+
+def test_a_gain_in_decimals_is_compared_with_the_factor_and_the_filter_is_written() -> None:
+    """The coefficients of the loop against SciPy's solution of Riccati's equation."""
+    A, C, noise = np.array([[0, 1, 0], [0, 0, 1], [0, 0, -1]]), np.array([[1, 0, 0]]), np.diag([0, 0, 9])
+    P = solve_continuous_are(A.T, C.T, noise, np.eye(1))
+    first, second, third = np.poly(A - P @ C.T @ C)[1:]
+    plant = symobs.StateSpace("[0 1 0; 0 0 1; 0 0 -1]", "[0; 0; 1]", "[1 0 0]")
+    page = text_of(symobs.kalman(plant, W="9", V="1", G="[0; 0; 1]"))
+    assert "= s³ + (l₁ + 1)s² + (l₁ + l₂)s + l₂ + l₃" in page
+    assert f"= s³ + {first:.5f} s² + {second:.5f} s + {third:.0f}" in page
+    assert "dx̂/dt = A x̂ + B u + L̂(y - C x̂)" in page
+    assert "enters the state equation as G w" in page

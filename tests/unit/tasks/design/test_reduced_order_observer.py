@@ -88,3 +88,11 @@ def test_coordinates_on_a_stratum_are_regular_there() -> None:
     curve, C = Ideal.of([a**2 - a - 1]), Exact.of([[a**2 - a - 1, a, 0]])
     assert completed(C).determinant() in curve
     assert completed(C, curve).determinant() not in curve
+
+
+def test_the_gain_of_several_outputs_follows_from_its_equations() -> None:
+    """A₂₂ = diag(−1, 0) and A₁₂ = I: the poles −4 and −5 ask for 3 and 5, by hand."""
+    plant = symobs.StateSpace("[0 0 1 0; 0 0 0 1; -2 1 -1 0; 1 -1 0 0]", "[0; 0; 1; 0]", "[1 0 0 0; 0 1 0 0]")
+    page = text_of(symobs.reduced_order_observer(plant, poles="-4, -5"))
+    assert "l₂ = 5, l₁ + 1 = 4" in page
+    assert "With several outputs the gain is not unique." in page

@@ -89,3 +89,10 @@ def test_a_row_inside_a_case_does_not_repeat_what_the_case_assumes() -> None:
         assert row in table
     assert "b ≠ 0, b = 0" not in table
     assert table.count("a = 0") == 2
+
+
+def test_the_gain_of_several_outputs_follows_from_its_equations() -> None:
+    """(s + 3) and (s + 2)(s + 4)(s + 5) = s³ + 11s² + 38s + 40, by hand."""
+    plant = symobs.StateSpace("[0 1 0 0; -2 -1 2 0; 0 0 0 1; 1 0 -1 -1]", "[0; 1; 0; 0]", "[1 0 0 0; 0 0 0 1]")
+    page = text_of(symobs.unknown_input_observer(plant, E="[0; 0; 0; 1]", poles="-2, -3, -4, -5"))
+    assert "l₄ = 3, l₁ + 1 = 11, l₁ + l₂ + 2 = 38, 2l₃ = 40" in page

@@ -1,0 +1,1 @@
+"""The equilibria of a nonlinear plant."""

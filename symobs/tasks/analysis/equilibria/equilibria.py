@@ -1,0 +1,284 @@
+"""The equilibria of ẋ = f(x, u), each with its conditions and the stability of its linearisation."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs.exact import Matrix, Scalar
+from symobs.exact.core.generators import NotWritten, all_roots, identities, normal_form
+from symobs.formula.tree import At, Environment, SymbolList
+from symobs.ground.dataclass import dataclass
+from symobs.proof.certificate.claims import Claim
+from symobs.proof.derivation.builder import relation
+from symobs.stability.criteria.stability import stability
+from symobs.system.conditions import sign_of
+from symobs.system.equilibria import Equilibria as Found
+from symobs.system.equilibria import Equilibrium, by_signs
+from symobs.system.linearize import all_equilibria, is_rate
+from symobs.system.motion import simplified, with_primes
+from symobs.system.reading import Nonlinear
+from symobs.tasks.analysis.linearisation_page import partial_derivatives, state_nonlinear
+from symobs.tasks.analysis.page_parts import say_stability, state_signs
+from symobs.tasks.result import Result, choose, method, task
+from symobs.tasks.result.output_methods import to_sympy
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.proof.derivation.builder import Builder
+    from symobs.system import StateSpace
+    from symobs.system.specification import Name
+
+
+@dataclass
+class Equilibria(Result):
+    """Points with f = 0, which are all there are where the search left nothing open."""
+
+    task: ClassVar[str] = "equilibria"
+
+    @property
+    def found(self) -> Found:
+        """The points and what is left open."""
+        found: Found = self.answer["found"]
+        return found
+
+    @property
+    def given(self) -> Nonlinear:
+        """The plant whose equilibria they are."""
+        return nonlinear_of(self.plant)
+
+    def claims(self) -> Iterator[Claim]:
+        """Yield f = 0 (x in discrete time) at each point, and the matrix of the linearisation there."""
+        for number, point in enumerate(self.found.points, 1):
+            values = Matrix.column(self._rest(point))
+            yield Claim(relation(values, values * 0), self._environment(values), f"f = 0 at {_text(point)}")
+            if (A := self.matrix_at(point)) is not None:
+                raw = self.jacobian.substitute(self._values(point))
+                yield Claim(relation(raw, A), self._environment(raw, A), f"the linearisation at equilibrium {number}")
+
+    def _environment(self, *values: Matrix) -> Environment:
+        """Return an environment in which functions have their identities, and roots of squares their signs."""
+        relations = (*identities(values)[1], *(zero for value in values for zero in self._roots_by_signs(value)))
+        return Environment(variable=self.plant.variable, relations=relations, signs=self._signs)
+
+    def _roots_by_signs(self, value: Matrix) -> list[Scalar]:
+        """Return what vanishes since the signs of the parameters decide roots of squares."""
+        differences = (root.value - by_signs(root.value, self._signs) for root in all_roots(value))
+        return [difference.numerator for difference in differences if not difference.is_zero]
+
+    def _rest(self, point: Equilibrium) -> list[Scalar]:
+        """Return what is 0 at an equilibrium, at a point."""
+        values = {**self._known, **point.values}
+        return self.given.at_rest(values, is_discrete=self.plant.is_discrete)
+
+    @property
+    def _known(self) -> dict[str, Scalar]:
+        return known_of(self.given)
+
+    @property
+    def _signs(self) -> dict[str, str]:
+        names = self.given.states + self.given.inputs
+        return {**self.plant.symbols.signs, **{name: self.plant.symbols.sign(name) for name in names}}
+
+    @property
+    def verdict(self) -> str:
+        """`no` where there is none, `undecided` where there may be others, `conditional` where each needs a condition."""
+        if not self.found.are_all:
+            return "undecided"
+        if not self.found.points:
+            return "no"
+        return "conditional" if all(point.conditions for point in self.found.points) else "yes"
+
+    @property
+    def conditions(self) -> tuple[Any, ...]:
+        """The conditions of each point as SymPy relations."""
+        found: tuple[Any, ...] = to_sympy([point.conditions for point in self.found.points], self.plant.symbols.objects)
+        return found
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The points by the names of states and inputs, the conditions of each, and whether its linearisation is stable."""
+        points, stable = self.found.points, [self.stability_at(point) for point in self.found.points]
+        question = {} if self.found.are_all else {"question": f"{self.found.open_equations[0]} = 0 has no closed form"}
+        return {
+            "points": [self._named(point) for point in points],
+            "conditions": [[*point.conditions] for point in points],
+            "stable": [verdict for verdict, _ in stable],
+            "stable_if": [inequalities for _, inequalities in stable],
+            "complete": self.found.are_all,
+            **question,
+        }
+
+    def _named(self, point: Equilibrium) -> dict[str, Scalar]:
+        """Return the values of the states and inputs in their order, by the names as they are typed."""
+        given, values = self.given, self._values(point)
+        named = with_primes if given.motion is not None else str
+        return {named(name): values[name] for name in given.states + given.inputs}
+
+    @property
+    def jacobian(self) -> Matrix:
+        """∂f/∂x."""
+        return self.given.jacobian(self.given.f, self.given.states)
+
+    def _values(self, point: Equilibrium) -> dict[str, Scalar]:
+        """Return the value of each state and input at a point."""
+        at_rest = {name: Scalar.of(0) for name in self.given.states if is_rate(name, self.given)}
+        return {**at_rest, **self._known, **point.values}
+
+    def matrix_at(self, point: Equilibrium) -> Matrix | None:
+        """Return ∂f/∂x at a point, None where f has no derivative that is written there."""
+        try:
+            value = self.jacobian.substitute(self._values(point))
+            rows = [[simplified(normal_form(by_signs(entry, self._signs))) for entry in row] for row in value.rows]
+        except (ZeroDivisionError, NotWritten):
+            return None
+        return Matrix.of(rows)
+
+    def stability_at(self, point: Equilibrium) -> tuple[str, list[str]]:
+        """Return whether the linearisation at a point is asymptotically stable, and where that needs conditions."""
+        if (A := self.matrix_at(point)) is None:
+            return "undecided", []
+        polynomial = simplified(A.characteristic_polynomial(self.plant.variable))
+        found = stability(polynomial, self.plant.variable, self._signs, discrete=self.plant.is_discrete)
+        told = {str(condition.expression) for condition in point.conditions if condition.operator == ">"}
+        left = [value for value in found.positive if not _is_told(value, told, self._signs)]
+        if found.verdict == "conditional" and not left:
+            return "yes", []
+        return found.verdict, found.inequalities(self._signs) if left else []
+
+    def write(self, page: Builder) -> None:
+        """Write the plant, what vanishes at rest, and each equilibrium with its linearisation."""
+        given, found = self.given, self.found
+        with page.section("given"):
+            state_nonlinear(page, given)
+            state_signs(page)
+        with page.section("equilibria"):
+            self._tell_equations(page)
+            if not found.are_all:
+                page.remark("equilibria_found", equation=found.open_equations[0])
+            elif len(found.points) == 1:
+                page.remark("equilibria_one")
+            elif found.points:
+                page.remark("equilibria_all", number=str(len(found.points)))
+            else:
+                page.remark("equilibria_none")
+        for number, point in enumerate(found.points, 1):
+            with page.section("equilibrium_numbered", number=str(number)):
+                self._tell(page, number, point)
+
+    def _tell_equations(self, page: Builder) -> None:
+        given = self.given
+        at_rest = [value.numerator for value in given.at_rest(self._known, is_discrete=self.plant.is_discrete)]
+        kept = [simplified(value) for value in at_rest if not value.is_zero]
+        if kept:
+            page.remark("at_rest", equations=Matrix.column(kept))
+        else:
+            page.remark("every_point_rests")
+
+    def _tell(self, page: Builder, number: int, point: Equilibrium) -> None:
+        """Tell a point, f there, and the linearisation."""
+        given, values = self.given, self._values(point)
+        moved = given.f.substitute(values)
+        page.in_time(moved)
+        page.where(*self._roots_by_signs(moved))
+        names, entries = tuple(point.values), [*point.values.values()]
+        if len(names) > 1:
+            page.remark("an_equilibrium", names=SymbolList(names), values=Matrix.row(entries))
+        else:
+            page.remark("an_equilibrium_of_one", names=SymbolList(names), value=entries[0])
+        for condition in point.conditions:
+            page.remark(f"rests_where_{_WHERE[condition.operator]}", value=condition.expression)
+        if point.free:
+            page.remark("free_at_rest", names=SymbolList(point.free))
+        there: Any = page["f_x"].formula
+        for name in (*given.states, *given.inputs):
+            there = At(there, name, values[name])
+        time = "discrete" if self.plant.is_discrete else "continuous"
+        rest = Matrix.column([values[name] if self.plant.is_discrete else Scalar.of(0) for name in given.states])
+        page.equal(relation(page.term(there), rest), say=f"is_at_rest_{time}", answer=True)
+        if (A := self.matrix_at(point)) is not None and number <= MOST_LETTERS:
+            self._tell_linearisation(page, f"A_e{number}", A, values)
+
+    def _tell_linearisation(self, page: Builder, letter: str, A: Matrix, values: Mapping[str, Scalar]) -> None:
+        """Tell the matrix at a point, by partial derivatives where no root is written that it has not, and its stability."""
+        given = self.given
+        raw = self.jacobian.substitute(values)
+        page.in_time(A)
+        if all_roots(raw) <= all_roots(A):
+            page.in_time(raw)
+            columns = page.term(partial_derivatives("f_x", self.jacobian, given.states))
+            for name in (*given.states, *given.inputs):
+                columns = columns.at(name, values[name])
+            page.define(letter, columns, A, say="linearised_there", closing=False)
+        else:
+            page.remark("linearised_there")
+            page.given(relation(page[letter], A))
+            page.environment = page.environment.extended_by(values={letter: A})
+        determinant = page(f"det(pencil({letter}))")
+        page.equal(relation(determinant, simplified(A.characteristic_polynomial(self.plant.variable))))
+        say_stability(page, determinant)
+
+
+#: As many linearisations have a letter of their own.
+MOST_LETTERS = 9
+_WHERE = {">": "positive", ">=": "nonnegative", "!=": "nonzero", "==": "zero"}
+
+
+def _text(point: Equilibrium) -> str:
+    return ", ".join(f"{name} = {value}" for name, value in point.values.items())
+
+
+def _is_told(value: Scalar, told: set[str], signs: Mapping[str, str]) -> bool:
+    """Return whether a polynomial is positive by a condition, or by signs."""
+    unit, factors = value.factors()
+    side = 1 if sign_of(unit, signs) == "positive" else -1
+    for factor, power in factors:
+        sign = sign_of(factor, signs)
+        if sign in {"positive", "negative"}:
+            side = -side if sign == "negative" and power % 2 else side
+        elif str(factor) in told:
+            continue
+        elif str(-factor) in told:
+            side = -side if power % 2 else side
+        else:
+            return False
+    return side > 0
+
+
+def known_of(given: Nonlinear) -> dict[str, Scalar]:
+    """Return the values of inputs that were given with the plant."""
+    return dict(given.held)
+
+
+def nonlinear_of(plant: StateSpace) -> Nonlinear:
+    """Return the nonlinear plant, or ẋ = A x of a linear one without input."""
+    if plant.nonlinear is not None:
+        return plant.nonlinear
+    names = tuple(f"x_{k}" for k in range(1, plant.order + 1))
+    f = plant.matrices.A @ Matrix.column([Scalar.symbol(name) for name in names])
+    return Nonlinear(f, None, names, (), ())
+
+
+@method("equilibria/elimination", source="definition")
+def elimination(plant: StateSpace) -> Equilibria:
+    """Solve f = 0 by factors, linear unknowns, and inverse functions, each step an equivalence."""
+    given = nonlinear_of(plant)
+    signs = {**plant.symbols.signs, **{name: plant.symbols.sign(name) for name in given.states + given.inputs}}
+    known = {**{n: Scalar.of(0) for n in given.states if is_rate(n, given)}, **known_of(given)}
+    found = all_equilibria(given, known, signs, is_discrete=plant.is_discrete)
+    return Equilibria(plant, "elimination", {"found": found})
+
+
+@task
+def equilibria(plant: StateSpace, *, method: Name = "auto") -> Result:
+    """Return all x, u with f(x, u) = 0 (f(x, u) = x in discrete time), and whether the linearisation at each is stable.
+
+    plant    a nonlinear plant with n states, by f or by its equations of motion; values of its inputs count as given, and
+             of a linear plant the input is 0
+    Returns points (a mapping from states and inputs to values; what is free keeps its name), conditions (those of each
+    point), stable and stable_if (of each linearisation), complete (whether there are no others).  Raises `InputError` for
+    an unknown method.
+    Source: H. K. Khalil, Nonlinear Systems, 3rd edition, sections 1.2 and 4.3.
+    """
+    return choose("equilibria", method, "elimination").solve(plant)

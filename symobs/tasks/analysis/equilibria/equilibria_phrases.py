@@ -1,0 +1,40 @@
+"""Where a nonlinear plant rests, and whether the linearisation there is stable."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "equilibria": "Equilibria.",
+    "equilibrium_numbered": "Equilibrium {number}.",
+    "at_rest": "Where nothing moves, the equations demand that {equations} is 0. They are solved by steps each of which is an equivalence: a product is 0 where a factor is, and angles count modulo 2π.",
+    "every_point_rests": "Where nothing moves, the equations demand nothing: every point is an equilibrium.",
+    "equilibria_all": "There are {number} solutions, which follow, and no others.",
+    "equilibria_one": "There is one solution, which follows, and no other.",
+    "equilibria_none": "There is no real solution, and no equilibrium.",
+    "equilibria_found": "What follows are solutions; whether there are others is not decided here, since the zeros of {equation} have no closed form.",
+    "an_equilibrium": "The plant rests at ({names:list}) = {values}.",
+    "an_equilibrium_of_one": "The plant rests at {names:list} = {value}.",
+    "rests_where_positive": "This is where {value} is positive.",
+    "rests_where_nonnegative": "This is where {value} is not negative.",
+    "rests_where_nonzero": "This is where {value} is not 0.",
+    "rests_where_zero": "This is where {value} is 0.",
+    "free_at_rest": "Here {names:list} may have any value.",
+    "is_at_rest_continuous": "There the states do not change:",
+    "is_at_rest_discrete": "There the states keep their values:",
+    "linearised_there": "The matrix of the linearisation there is",
+}
+
+#: What these sentences contain is held to f by the display that follows.
+NAMING = (
+    "at_rest",
+    "an_equilibrium",
+    "an_equilibrium_of_one",
+    "rests_where_positive",
+    "rests_where_nonnegative",
+    "rests_where_nonzero",
+    "rests_where_zero",
+    "equilibria_found",
+)
+
+QUESTIONS: dict[str, str] = {
+    "ask equilibria": "Find all equilibria, and decide for each whether the linearisation there is asymptotically stable.",
+}

@@ -1,0 +1,64 @@
+"""The root locus of a loop."""
+
+from __future__ import annotations
+
+PHRASES: dict[str, str] = {
+    "root_locus": "Root locus.",
+    "locus_controller": "The loop is closed by the controller, times the gain $k$,",
+    "locus_poles": "The denominator of the loop, without any cancelling, is",
+    "locus_zeros": "its numerator, with the sign of the feedback, is",
+    "locus_moved": "so that the poles of the closed loop are the roots of",
+    "locus_begin": "For $k = 0$ the branches begin at the poles of the loop, {roots}.",
+    "locus_end": "As the gain grows, branches end at the zeros of the loop, {roots}.",
+    "locus_asymptotes": "The number of poles exceeds that of the zeros by {excess}: as many branches go to infinity, along asymptotes through {centroid}.",
+    "locus_branch": "Branches meet at {real} for the gain {k}, rounded to six digits after the point: there the polynomial has a multiple root§.",
+    "locus_branch_pair": "Branches meet at the pair with the real part {real} and the imaginary parts ±{imaginary} for the gain {k}, rounded to six digits after the point: there the polynomial has multiple roots§.",
+    "locus_departure": "From the pole with real part {real} and imaginary part {imaginary} the branch departs at {angle} degrees, rounded to six digits after the point§.",
+    "locus_arrival": "At the zero with real part {real} and imaginary part {imaginary} the branch arrives at {angle} degrees, rounded to six digits after the point§.",
+    "locus_crossing": "A branch meets the imaginary axis at ±j{omega} for the gain {k}, rounded to six digits after the point§.",
+    "locus_crossing_discrete": "A branch meets the unit circle at the angles ±{omega} for the gain {k}, rounded to six digits after the point§.",
+    "locus_stability": "For which gains all roots are stable, follows from where they meet the boundary of stability.",
+}
+
+QUESTIONS: dict[str, str] = {
+    "ask root_locus": "Sketch the root locus of the loop for gains from 0 on: find where branches meet, where they cross the boundary of stability, and for which gains the closed loop is stable.",
+    "ask root_locus controller": "Sketch the root locus of the loop of the plant and the controller {controller}, times a gain, for gains from 0 on: find where branches meet, where they cross the boundary of stability, and for which gains the closed loop is stable.",
+    "also root_locus gain_sign=-1": "The feedback is positive.",
+}
+
+DEMANDS: dict[str, str] = {
+    "locus_begin": "poles_of chi_o",
+    "locus_branch": "on_locus branch chi_o q",
+    "locus_branch_pair": "on_locus branch chi_o q",
+    "locus_departure": "on_locus departure chi_o q",
+    "locus_arrival": "on_locus arrival chi_o q",
+    "locus_crossing": "on_locus crossing chi_o q, continuous_time",
+    "locus_crossing_discrete": "on_locus crossing chi_o q, discrete_time",
+    "locus_asymptotes": "has_asymptotes chi_o q",
+}
+
+RESTS_ON: dict[str, str] = {
+    "locus_branch": "root_locus_rules",
+    "locus_branch_pair": "root_locus_rules",
+    "locus_departure": "root_locus_rules",
+    "locus_arrival": "root_locus_rules",
+    "locus_crossing": "root_locus_rules",
+    "locus_crossing_discrete": "root_locus_rules",
+}
+
+THEOREMS: dict[str, str] = {
+    "root_locus_rules": "ogata2010, ch. 6",
+}
+
+#: Phrases that go on with the sentence before them.
+CONTINUES = ("locus_zeros", "locus_moved")
+
+NAMING = (
+    "locus_asymptotes",
+    "locus_branch",
+    "locus_branch_pair",
+    "locus_departure",
+    "locus_arrival",
+    "locus_crossing",
+    "locus_crossing_discrete",
+)

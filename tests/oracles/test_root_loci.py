@@ -1,0 +1,94 @@
+"""Root loci against the numbers of textbooks, and against roots with 50 digits."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+import symobs
+from tests.support.paths import ROOT
+
+LOCI = tomllib.loads((ROOT / "tests" / "oracles" / "root_loci.toml").read_text("utf-8"))["loci"]
+
+
+def _near(found: list[Any], printed: list[Any]) -> bool:
+    assert len(found) == len(printed), (found, printed)
+    return all(
+        np.allclose(one[: len(other)], other, rtol=3e-3, atol=5e-3)
+        for one, other in zip(sorted(found), sorted(printed), strict=True)
+    )
+
+
+@pytest.mark.parametrize("locus", LOCI, ids=[each["source"] for each in LOCI])
+def test_the_landmarks_are_those_of_the_book(locus: dict[str, Any]) -> None:
+    found: Any = symobs.root_locus(symobs.StateSpace.from_transfer_function(locus["loop"])).fields
+    branch = [
+        (complex(mpmath.mpmathify(symobs_number(b["s"]))), float(symobs_number(b["k"]).real))
+        for b in found["breakaway"]
+    ]
+    if "breakaway" in locus:
+        assert _near([[s.real, s.imag, k] for s, k in branch], locus["breakaway"])
+    if "crossings" in locus:
+        crossed = [[float(c["k_decimal"]), float(c["omega_decimal"])] for c in found["crossings"]]
+        assert _near(crossed, locus["crossings"])
+    if "departure" in locus:
+        assert _near([[float(each["angle"])] for each in found["departure"]], [[angle] for angle in locus["departure"]])
+    if "centroid" in locus:
+        assert abs(float(found["asymptotes"]["centroid"].fraction()) - locus["centroid"]) < 1e-3
+
+
+def symobs_number(text: Any) -> complex:
+    """Return the number that an exact text stands for, by SymPy."""
+    import sympy  # noqa: PLC0415 - only these tests pay for it
+
+    return complex(sympy.sympify(str(text)).evalf(30))  # noqa: TID251 - texts of our own
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_multiple_roots_and_crossings_have_50_digits(seed: int) -> None:
+    """Hold that p + k q has a double root at each branch point, and a root on the boundary at each crossing, with 50 digits."""
+    import sympy  # noqa: PLC0415
+
+    rng = np.random.default_rng(seed)
+    discrete = bool(seed % 2)
+    n, m = 3 + seed % 2, seed % 3
+    p = [1, *(int(c) for c in rng.integers(-6, 7, n))]
+    q = [1, *(int(c) for c in rng.integers(-6, 7, m))]
+    plant = symobs.StateSpace.from_transfer_function([q, p], dt=int(discrete))
+    found: Any = symobs.root_locus(plant).fields
+    if len(found["poles"]) < n:  # something cancels
+        return
+    mpmath.mp.dps = 60
+
+    def value(text: Any) -> Any:
+        return mpmath.mpmathify(str(sympy.N(sympy.sympify(str(text)), 55)).replace("*I", "j").replace(" ", ""))  # noqa: TID251 - texts of our own
+
+    def at(s: Any, k: Any, *, slope: bool = False) -> Any:
+        whole = [mpmath.mpf(a) + k * b for a, b in zip(p, [0] * (n - m) + q, strict=True)]
+        return mpmath.polyval(whole, s, derivative=slope)[int(slope)] if slope else mpmath.polyval(whole, s)
+
+    tiny = mpmath.mpf(10) ** -40
+    for branch in found["breakaway"]:
+        s, k = value(branch["s"]), value(branch["k"])
+        assert k >= 0
+        assert abs(at(s, k)) < tiny
+        assert abs(at(s, k, slope=True)) < tiny
+    for crossing in found["crossings"]:
+        k, omega = value(crossing["k"]), value(crossing["omega"])
+        s = mpmath.exp(1j * omega) if discrete else 1j * omega
+        assert k > 0
+        assert abs(at(s, k)) < tiny
+    # none is missed: on a fine grid of gains the number of unstable roots changes at the crossings alone
+    ends = sorted(float(c["k_decimal"]) for c in found["crossings"])
+    grid = np.geomspace(1e-3, 1e4, 3000)
+    counts = []
+    for k in grid:
+        roots = np.roots([a + k * b for a, b in zip(p, [0] * (n - m) + q, strict=True)])
+        counts.append(int(sum(abs(roots) > 1) if discrete else sum(roots.real > 0)))
+    for k0, k1, a, b in zip(grid, grid[1:], counts, counts[1:], strict=False):
+        if a != b:
+            assert any(k0 * 0.99 <= end <= k1 * 1.01 for end in ends), (k0, ends)
