@@ -124,3 +124,13 @@ def test_sums_over_the_same_roots_are_one_sum() -> None:
     assert r"1-\sum" in answer
     assert r"(\lambda^3+2\lambda^2+3\lambda+2)e^{\lambda t}" in answer
     assert "x(t)_{" not in page  # no named entries in the box of the state
+
+
+def test_powers_of_A_end_where_the_rank_is_full() -> None:
+    """Two sensors on five states: C, CA and CA² have rank 5 (the observability indices are 2 and 3)."""
+    A, C = "[0 1 0 0 0; -2 -1 1 0 0; 0 0 0 1 0; 1 0 -1 -1 1; 0 0 0 0 -2]", "[1 0 0 0 0; 0 0 1 0 0]"
+    page = symobs.observer(symobs.StateSpace(A, C=C), poles=[-4, -4, -5, -5, -6]).to("text")
+    assert "The first rows of the observability matrix are" in page
+    assert "C A²" in page
+    assert "A³" not in page
+    assert "A⁴" not in page
