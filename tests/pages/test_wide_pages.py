@@ -134,3 +134,11 @@ def test_powers_of_A_end_where_the_rank_is_full() -> None:
     assert "C A²" in page
     assert "A³" not in page
     assert "A⁴" not in page
+
+
+def test_a_gain_of_few_signs_is_boxed_itself() -> None:
+    symbols = dict.fromkeys(["g", "l", "m", "zeta", "omega"], "positive")
+    plant = symobs.StateSpace("[0 1; g/l 0]", "[0; 1/(m*l^2)]", symbols=symbols)
+    page = symobs.state_feedback(plant, polynomial="s^2 + 2*zeta*omega*s + omega^2").to("text")
+    assert "k₁" not in page
+    assert "2l² m ω ζ" in page
