@@ -195,8 +195,10 @@ def test_python_and_the_shell_know_the_levels() -> None:
     result = symobs.observer(plant, poles=[-10, -10])
     full, outline, answer = (" ".join(str(result.to("text", detail=detail)).split()) for detail in DETAILS)
     assert len(answer) < len(outline) < len(full)
-    assert "with a correction proportional to the output error" in full
-    assert "with a correction proportional to the output error" not in outline
+    assert "Irrespective of the input" in full
+    assert "Irrespective of the input" not in outline
+    assert "The observability matrix is" in outline  # no matrix without a word
+    assert "The observability matrix is" not in answer
     assert "as required" in answer
     run = inside("solve", str(SERVO), "--format", "text", "--detail", "answer")
     assert run.code == 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 
 import symobs
@@ -89,3 +90,55 @@ def test_long_gains_have_letters_in_which_the_page_goes_on() -> None:
     assert re.search(r"⎡ +-l₁ +1 +0 +0⎤", pages[0])
     assert pages[0].count("-k_s/m_s - l₂") == 1
     assert "K = [K₁  K₂] = [f₁  f₂  f₃  f₄]" in pages[1]
+
+
+# -- functions of time -------------------------------------------------------------------------------------------------
+
+
+def test_a_boxed_exponential_has_no_named_entries() -> None:
+    page = symobs.matrix_exponential(symobs.StateSpace("[0 1 0; 0 0 1; -10 -9 -4]")).to("latex")
+    assert r"\answer{" in page
+    assert (
+        r"(e^{At})_{" not in page
+    )  # 1/10 (e^{-t} (7 sin 2t - 4 cos 2t) + 4 e^{-2t}) and others: the sum of modes is boxed
+
+
+def test_the_number_e_has_no_exponent_and_a_fraction_of_it_no_needless_signs() -> None:
+    plant = symobs.StateSpace("[0 1 0; 0 -1 1; 0 0 -2]", "[0; 0; 1]")
+    found = symobs.minimum_energy_input(plant, initial="0, 0, 0", final="1, 0, 0", horizon="1")
+    page = found.to("latex")
+    assert "e^{1}" not in page
+    assert r"\frac{2+8e+2e^{2}}{2+2e-e^{2}}" in page  # -2 - 8 e - 2 e^2 over e^2 - 2 e - 2
+
+
+def test_sums_over_the_same_roots_are_one_sum() -> None:
+    """Two masses with damping: N(λ)/(λ q′(λ)) is the residue of P(s)/s, and -λ n(λ) = N(λ) modulo q, N = s² + s + 1."""
+    plant = symobs.StateSpace("[0 1 0 0; -2 -1 1 0; 0 0 0 1; 1 0 -1 -1]", "[0; 1; 0; 0]", "[1 0 0 0]")
+    found = symobs.response(plant, input="1")
+    roots = np.roots([1, 2, 4, 3, 1])
+    n, residue = np.polyval([1, 2, 3, 2], roots), np.polyval([1, 1, 1], roots) / roots
+    assert np.allclose(-n, residue)
+    page = found.to("latex")
+    answer = page.partition("y(t)=")[2].partition(r"\]")[0]
+    assert answer.count(r"\sum") == 1
+    assert r"1-\sum" in answer
+    assert r"(\lambda^3+2\lambda^2+3\lambda+2)e^{\lambda t}" in answer
+    assert "x(t)_{" not in page  # no named entries in the box of the state
+
+
+def test_powers_of_A_end_where_the_rank_is_full() -> None:
+    """Two sensors on five states: C, CA and CA² have rank 5 (the observability indices are 2 and 3)."""
+    A, C = "[0 1 0 0 0; -2 -1 1 0 0; 0 0 0 1 0; 1 0 -1 -1 1; 0 0 0 0 -2]", "[1 0 0 0 0; 0 0 1 0 0]"
+    page = symobs.observer(symobs.StateSpace(A, C=C), poles=[-4, -4, -5, -5, -6]).to("text")
+    assert "The first rows of the observability matrix are" in page
+    assert "C A²" in page
+    assert "A³" not in page
+    assert "A⁴" not in page
+
+
+def test_a_gain_of_few_signs_is_boxed_itself() -> None:
+    symbols = dict.fromkeys(["g", "l", "m", "zeta", "omega"], "positive")
+    plant = symobs.StateSpace("[0 1; g/l 0]", "[0; 1/(m*l^2)]", symbols=symbols)
+    page = symobs.state_feedback(plant, polynomial="s^2 + 2*zeta*omega*s + omega^2").to("text")
+    assert "k₁" not in page
+    assert "2l² m ω ζ" in page

@@ -44,8 +44,12 @@ class RootSum(Function):
     @property
     def summand(self) -> Scalar:
         """The summand."""
-        root = Scalar.symbol(EIGENVALUE)
-        return root**self.power * function("exp", root * self.argument) / self.slope
+        return self.numerator * function("exp", Scalar.symbol(EIGENVALUE) * self.argument) / self.slope
+
+    @property
+    def numerator(self) -> Scalar:
+        """What stands over q′(λ) beside the exponential."""
+        return Scalar.symbol(EIGENVALUE) ** self.power
 
     @property
     def is_rational(self) -> bool:
@@ -74,7 +78,9 @@ class RootSum(Function):
         root = Scalar.symbol(self.bound)
         q, below = _texts(self.polynomial, self.bound)
         named = f", {self.bound}" if len(self.polynomial.names) > 1 else ""
-        return f"RootSum({q}, Lambda({self.bound}, {root**self.power}*exp({root * self.argument})/({below})){named})"
+        above = self.numerator.substitute({EIGENVALUE: root})
+        above_in_product = f"({above})" if len(above.terms()) > 1 else str(above)
+        return f"RootSum({q}, Lambda({self.bound}, {above_in_product}*exp({root * self.argument})/({below})){named})"
 
     @property
     def symbols(self) -> frozenset[str]:
@@ -109,6 +115,18 @@ class RootSum(Function):
             return replace(self, argument=argument, polynomial=q).value
         lead, *lower = q.coefficients(EIGENVALUE)
         return 1 / lead if self.power == len(lower) - 1 else Scalar.of(0)
+
+
+@dataclass
+class JoinedSum(RootSum):
+    """Σ n(λ) e^{λ·argument} / q′(λ), a combination of several sums as it is printed; nothing is calculated with it."""
+
+    above: Scalar
+
+    @property
+    def numerator(self) -> Scalar:
+        """The polynomial n(λ)."""
+        return self.above
 
 
 @lru_cache(maxsize=256)

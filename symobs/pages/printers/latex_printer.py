@@ -238,7 +238,9 @@ class LatexPrinter(Printer[LatexBox]):
     # -- functions of time ----------------------------------------------------------------------------------------
 
     def exponential(self, argument: Scalar) -> LatexBox:
-        r"""Return `e^{-t/2}`: fractions in the exponent are written with a slash."""
+        r"""Return `e^{-t/2}`, `e` of 1: fractions in the exponent are written with a slash."""
+        if argument.is_one:
+            return LatexBox(0.47, Level.ATOM, "e")
         exponent = self.styled(in_exponent=True).scalar(argument)
         return LatexBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, f"e^{{{exponent.source}}}")
 

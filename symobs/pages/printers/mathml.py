@@ -281,7 +281,9 @@ class MathmlPrinter(Printer[MathmlBox]):
     # -- functions of time ----------------------------------------------------------------------------------------
 
     def exponential(self, argument: Scalar) -> MathmlBox:
-        """Return the exponential, fractions in its exponent with a slash."""
+        """Return the exponential, e of 1: fractions in its exponent with a slash."""
+        if argument.is_one:
+            return MathmlBox(0.47, Level.ATOM, ("<mi>e</mi>",))
         exponent = self.styled(in_exponent=True).scalar(argument)
         element = f"<msup><mi>e</mi>{exponent.one}</msup>"
         return MathmlBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, (element,))

@@ -253,7 +253,9 @@ class Printer(FormulaWriter[B]):
         if isinstance(function, RootSum):
             q, below = (self.typeset(formula_of(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
             over = self.joined([q, self.comparison("="), self.scalar(Scalar.of(0))], Level.SUM)
-            return self.summed(over, self.fraction(self.scalar(function.summand * function.slope), below))
+            above, rising = function.numerator, function.summand * function.slope / function.numerator
+            parts = (Literal(rising),) if above.is_one else (formula_of(above, EIGENVALUE), Literal(rising))
+            return self.summed(over, self.fraction(self.typeset(Product(parts)), below))
         if isinstance(function, PowerOf):
             return self.power_of(function)
         argument = self.scalar(function.argument)

@@ -10,7 +10,8 @@ from itertools import accumulate
 from math import lcm
 from typing import TYPE_CHECKING
 
-from symobs.exact import Matrix, Scalar
+from symobs.exact import EIGENVALUE, Matrix, Scalar
+from symobs.exact.algebraic.root_sum import JoinedSum, RootSum
 from symobs.exact.core.generators import exponentials_in, function_named, generator
 from symobs.exact.core.ring import number_of
 from symobs.formula.tree import Block, Formula, Literal, Negative, Numeral, Power, Product, Quotient, Sum
@@ -135,11 +136,15 @@ def _time_function(value: Scalar) -> Formula:
         if (raised := _raised(value)) is not None:
             return raised
         above = value.numerator
-        negative = above.terms()[0][0] < 0 and len(above.terms()) == 1
-        top = formula_of(-above if negative else above, "")
-        fraction = Quotient(top, formula_of(below, ""))
+        negative = all(coefficient < 0 for coefficient, _ in above.terms())
+        above = -above if negative else above
+        if negative and any(
+            coefficient < 0 for coefficient, _ in below.terms()
+        ):  # (1 + e)/(2 − e) for −(1 + e)/(e − 2)
+            negative, below = False, -below
+        fraction = Quotient(formula_of(above, ""), formula_of(below, ""))
         return Negative(fraction) if negative else fraction
-    separate = _grouped(_parts(value.numerator), below)
+    separate = _grouped({fading: _joined_sums(group) for fading, group in _parts(value.numerator).items()}, below)
     if below.is_one:
         return separate
     whole = _over(value.numerator, below)
@@ -167,7 +172,7 @@ def _raised(value: Scalar) -> Formula | None:
 
 
 def separate_formula(value: Scalar) -> Formula:
-    """Return a value that contains functions of time, term by term with coefficients."""
+    """Return a value that contains functions of time, term by term with coefficients, each of them a term of the value."""
     if any(is_time_function(name) for name in value.denominator.names):
         return _time_function(value)
     return _grouped(_parts(value.numerator), value.denominator)
@@ -259,9 +264,9 @@ def _positive_first(terms: list[Formula]) -> list[Formula]:
     return [terms[lead], *terms[:lead], *terms[lead + 1 :]]
 
 
-def _speed(part: Part) -> tuple[int, str]:
+def _speed(part: Part) -> tuple[int, str, int]:
     text = " ".join(name for name, _ in part)
-    return len(text), text
+    return len(text), text, sum(power for _, power in part)
 
 
 def _sum_of(group: dict[Part, Scalar], below: Scalar) -> list[Formula]:
@@ -276,6 +281,24 @@ def _sum_of(group: dict[Part, Scalar], below: Scalar) -> list[Formula]:
         else:
             terms.append(_with_sign(body, functions))
     return terms if not terms or not isinstance(terms[0], Negative) else _positive_first(terms)
+
+
+def _joined_sums(group: dict[Part, Scalar]) -> dict[Part, Scalar]:
+    """Return the coefficients with one sum Σ (2 + λ) e^{λt}/q′(λ) for several over the same roots."""
+    over: dict[tuple[Scalar, Scalar], list[tuple[Part, RootSum]]] = {}
+    for part in group:
+        found = function_named(part[0][0]) if len(part) == 1 and part[0][1] == 1 else None
+        if isinstance(found, RootSum):
+            over.setdefault((found.polynomial, found.argument), []).append((part, found))
+    joined = dict(group)
+    for (polynomial, argument), members in over.items():
+        if len(members) > 1:
+            root = Scalar.symbol(EIGENVALUE)
+            above = sum((joined.pop(part) * root**found.power for part, found in members), Scalar.of(0))
+            content, _ = above.factors()
+            whole = JoinedSum("RootSum", argument, polynomial, 0, above / content)
+            joined[((next(iter(whole.value.names)), 1),)] = content
+    return joined
 
 
 def _still(coefficient: Scalar) -> Formula:

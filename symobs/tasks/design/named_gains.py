@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
@@ -9,7 +10,7 @@ from symobs.formula.tree import Literal, children
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.tasks.analysis.page_parts import is_narrow
 from symobs.tasks.design.pole_placement.sylvester import fresh_names, taken_names
-from symobs.tasks.design.readability import GAIN
+from symobs.tasks.design.readability import GAIN, GAIN_IN_SIGNS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from symobs.formula.tree.term import Term
 
 
+#: A name in the text of an entry.
+_NAME = re.compile(r"[A-Za-z_]\w*")
 #: The letters for the entries of gains; one that the data use, too, is passed over.
 _ENTRIES = {"K": ("k", "f", "g"), "L": ("l", "h", "g")}
 
@@ -40,10 +43,16 @@ def gain_letters(page: Builder, gain: str, value: Matrix, kept: Callable[[Scalar
     return letters
 
 
+def _is_short(gain: Matrix) -> bool:
+    """Return whether a gain is written out, a name counted as one sign: [lm(lω² + g), 2l²mζω]."""
+    signs = [sum(len(_NAME.sub("x", str(entry)).replace("*", "")) for entry in row) for row in gain.rows]
+    return is_narrow(gain, within=GAIN) or max(signs) <= GAIN_IN_SIGNS
+
+
 def _is_brief(formula: Formula) -> bool:
     """Return whether matrices written out in a formula are narrow."""
     if isinstance(formula, Literal):
-        return not isinstance(formula.value, Matrix) or is_narrow(formula.value, within=GAIN)
+        return not isinstance(formula.value, Matrix) or _is_short(formula.value)
     return all(map(_is_brief, children(formula)))
 
 
@@ -53,7 +62,7 @@ def define_gain(
     """Introduce a gain (`transposed`, through its transpose); a long one with letters, and what they stand for."""
     *before, last = (page.value(member) if isinstance(member, Matrix) else member for member in members)
     value = last.value.T if transposed else last.value
-    if not value.names or (is_narrow(value, within=GAIN) and not page.in_letters):
+    if not value.names or (_is_short(value) and not page.in_letters):
         shown, before = value, [*before, last]
     elif page.defines(gain) and page[gain].value.substitute(page.environment.coefficients) == value:
         shown = page[gain].value

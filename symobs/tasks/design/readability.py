@@ -18,6 +18,8 @@ PARAMETRIC_CANONICAL_FORM_ORDER = 2
 COEFFICIENT = 4
 #: A gain with a longer row, written in one line, has letters for its entries.
 GAIN = 40
+#: The same in signs as they are printed.
+GAIN_IN_SIGNS = 24
 #: The longest row-reduced form, and the most null vectors: there are no more letters for them.
 REDUCED_FORM = 150
 NULL_VECTORS = 9

@@ -7,6 +7,10 @@ PHRASES: dict[str, str] = {
     "controllability_matrix": "The controllability matrix is",
     "yes_observability": "Hence $O$ has full rank and ($C$, $A$) is observable.",
     "yes_controllability": "Hence $Ctr$ has full rank and ($A$, $B$) is controllable.",
+    "first_blocks_observability": "The first rows of the observability matrix are",
+    "first_blocks_controllability": "The first columns of the controllability matrix are",
+    "first_rank_observability": "They have full rank already, {rank}, hence the pair ($C$, $A$) is observable.",
+    "first_rank_controllability": "They have full rank already, {rank}, hence the pair ($A$, $B$) is controllable.",
     "full_rank_observability": "Since {rank}, the pair ($C$, $A$) is observable.",
     "full_rank_controllability": "Since {rank}, the pair ($A$, $B$) is controllable.",
     "generic_rank_observability": "For generic parameter values {rank}, and the pair ($C$, $A$) is observable; the exceptions follow.",
@@ -51,6 +55,8 @@ QUESTIONS: dict[str, str] = {
 DEMANDS: dict[str, str] = {
     "yes_observability": "observable C A",
     "yes_controllability": "observable Bᵀ Aᵀ",
+    "first_rank_observability": "observable C A",
+    "first_rank_controllability": "observable Bᵀ Aᵀ",
     "full_rank_observability": "says_observable_everywhere C A",
     "full_rank_controllability": "says_observable_everywhere Bᵀ Aᵀ",
     "generic_rank_observability": "says_observable C A,promises_cases",
@@ -87,6 +93,8 @@ DEMANDS: dict[str, str] = {
 
 RESTS_ON: dict[str, str] = {
     "yes_observability": "observability_rank",
+    "first_rank_observability": "observability_rank",
+    "first_rank_controllability": "controllability_rank",
     "full_rank_observability": "observability_rank",
     "generic_rank_observability": "observability_rank",
     "provided_observability": "observability_rank",

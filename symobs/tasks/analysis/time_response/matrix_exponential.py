@@ -23,7 +23,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.system.conditions import vanishing_factors
-from symobs.tasks.analysis.page_parts import formula_of_factored, given
+from symobs.tasks.analysis.page_parts import formula_of_factored, given, is_narrow
 from symobs.tasks.analysis.time_response.damping_cases import (
     DampingCases,
     Signs,
@@ -48,6 +48,8 @@ if TYPE_CHECKING:
 TIME = Scalar.symbol("t")
 #: Sums of up to this many matrices are shown before the entries.
 _SHOWN_SUM = 4
+#: Behind the sum of more than two states the entries are shown up to this many characters in a row.
+_ENTRIES = 130
 
 
 def closed_form(plant: StateSpace, taken: Signs, *, sums: bool = False) -> tuple[Exponential, Signs]:
@@ -183,7 +185,7 @@ def tell_exponential(page: Builder, found: Exponential, matrix: Matrix, *, answe
     members: list[Term | Matrix] = [page.term(_sum_of_modes(found))] if is_shown else []
     say = "exponential_sum" if members and "exponential_sum" not in page.told else "exponential_here"
     page.told.add(say)
-    if found.is_closed:
+    if found.is_closed and (not members or found.order == 2 or is_narrow(matrix, within=_ENTRIES)):
         members.append(matrix)
     page.define("exp_At", *members, say=say, answer=answer, closing=False)
     tell_roots(page, matrix)

@@ -6,7 +6,7 @@ from dataclasses import replace
 from math import prod
 from typing import TYPE_CHECKING
 
-from symobs.exact import Factored, Matrix, Scalar, factored, from_coefficients, root_of_pole, roots_of
+from symobs.exact import Factored, Matrix, Scalar, factored, from_coefficients, rank, root_of_pole, roots_of
 from symobs.exact.core.generators import all_roots
 from symobs.formula.tree import Evaluated, Literal, Roots
 from symobs.formula.tree.written import stacked
@@ -56,9 +56,12 @@ from symobs.tasks.result import choose
 if TYPE_CHECKING:
     from symobs.exact.core.generators import Function
     from symobs.formula.tree.term import Term
+    from symobs.tasks.analysis.rank.rank_test import RankResult
     from symobs.tasks.result import Case
 
 
+#: Up to this order the test matrix of several outputs (inputs) is written whole, as books do.
+_WHOLE_UP_TO = 3
 #: The degree of the factor of a conjugate pair.
 _PAIR = 2
 
@@ -137,11 +140,27 @@ def _roots_found(design: GainDesign, side: PlacementProblem) -> frozenset[Functi
     return all_roots(design.answer[side.gain]) - all_roots(m.A, m.B, m.C, *desired)
 
 
-def define_test_matrix(page: Builder, side: PlacementProblem) -> None:
-    """Define 𝒪 or 𝒞 block by block."""
-    order = page.plant.order
-    blocks = stacked("C", "A", order) if side.is_dual else stacked("B", "A", order, across=True)
-    page.define(side.matrix, blocks, say=f"{side.test}_matrix")
+def write_test(page: Builder, side: PlacementProblem, test: RankResult) -> bool:
+    """Define 𝒪 or 𝒞 block by block and say its rank; return whether it is known to be full.
+
+    Of a larger pair in numbers with several outputs (inputs) the first blocks are enough where their rank is full.
+    """
+    order, (row, across) = page.plant.order, ("C", False) if side.is_dual else ("B", True)
+    whole = stacked(row, "A", order, across=across)
+    several = page.plant.outputs if side.is_dual else page.plant.inputs
+    if several > 1 and order > _WHOLE_UP_TO and test.verdict == "yes" and not page[whole].value.names:
+        first = next(
+            part
+            for k in range(1, order + 1)
+            if rank((part := page(stacked(row, "A", k, across=across))).value) == order
+        )
+        if first.value.shape != page[whole].value.shape:
+            page.set(side.matrix, page[whole].value)
+            page.equal(relation(first, first.as_value), say=f"first_blocks_{side.test}")
+            page.conclude(f"first_rank_{side.test}", rank=relation(first.apply("rank"), order))
+            return True
+    page.define(side.matrix, whole, say=f"{side.test}_matrix")
+    return square_test(page, side.matrix, test, side.test)
 
 
 def _test(page: Builder, design: GainDesign, side: PlacementProblem, style: str) -> None:
@@ -149,8 +168,7 @@ def _test(page: Builder, design: GainDesign, side: PlacementProblem, style: str)
         say_canonical(page)
         return
     if not page.defines(side.matrix):
-        define_test_matrix(page, side)
-        is_known = square_test(page, side.matrix, design.test, side.test)
+        is_known = write_test(page, side, design.test)
     else:
         is_known = meets_obligations(f"assignable_{side.kind}", SentenceContext((), page.environment))
     if is_known and design.fixed_polynomial.is_one and design.answer[side.gain] is not None:

@@ -322,7 +322,9 @@ def _tell_filter(page: Builder, gain: str) -> None:
     m = page.plant.matrices
     model = page["A x_hat + B u"] if m.has_input else page["A x_hat"]
     error = page["y - C x_hat - D u"] if m.has_feedthrough else page["y - C x_hat"]
-    page.dynamics("x_hat", model + page[gain] @ error, say="kalman_filter")
+    rate = model + page[gain] @ error
+    page.dynamics("x_hat", rate, silent=True)
+    page.remark("kalman_filter", law=relation(page["x_hat"].derivative, rate))
 
 
 def _is_enough(result: OptimalGain, tables: Mapping[str, list[list[Fraction]]], unit: Fraction) -> bool:

@@ -39,7 +39,7 @@ PHRASES: dict[str, str] = {
     "optimal_digits": "The solution is not written with square roots here. In decimals",
     "optimal_digits_matched": "Comparing it with the factor of the product above that has all roots in the stable region gives, in decimals,",
     "optimal_loop_polynomial": "With the rounded gain the characteristic polynomial is",
-    "kalman_filter": "The filter is",
+    "kalman_filter": "The filter is {law}.",
     "optimal_too_long": "The solution is not written with square roots here, and the digits that prove it are too many for a page.",
     "optimal_feedback_enclosed": "$P_r$ and $K_r$ are correct to the digits printed, {radius} being the last place§.",
     "optimal_rounded_feedback": "With $K_r$, rounded to multiples of {radius}, the loop is asymptotically stable, and the cost from $x_0$ exceeds the least one by at most {bound} $x_0ᵀ x_0$.",

@@ -353,8 +353,12 @@ def _name_extended(page: Builder) -> None:
 
 
 def _enters(page: Builder) -> Term:
-    plant = page.plant
-    return page.value(Matrix.block([[Matrix.zeros(plant.order, plant.outputs)], [Matrix.identity(plant.outputs)]]))
+    """Return what r is multiplied by: [0; I], of one output the column."""
+    order, outputs = page.plant.order, page.plant.outputs
+    zero = Matrix.zeros(order, outputs)
+    if outputs == 1:
+        return page.value(Matrix.block([[zero], [Matrix.identity(outputs)]]))
+    return block([[page.value(zero)], [page.identity(outputs)]])
 
 
 def _design(page: Builder, design: IntegralAction, *, is_case: bool = False) -> None:

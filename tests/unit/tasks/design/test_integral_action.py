@@ -41,3 +41,9 @@ def test_the_gain_of_several_inputs_follows_from_its_equations() -> None:
     page = text_of(symobs.integral_action(plant, poles="-1, -2, -3, -4"))
     assert "-2k₃ = 2, k₁ + 2 = 7, -k₂ = 12" in page
     assert "integrator together gives" not in page
+
+
+def test_the_references_of_several_outputs_enter_through_a_unit_matrix() -> None:
+    plant = symobs.StateSpace("[0 1; 0 0]", "[1 0; 0 1]", "[1 0; 0 1]")
+    page = symobs.integral_action(plant, poles=[-1, -2, -3, -4]).to("text")
+    assert "(-A_cl)⁻¹[0; I]" in page  # not the column of zeros and ones
