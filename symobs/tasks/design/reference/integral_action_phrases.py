@@ -17,7 +17,7 @@ PHRASES: dict[str, str] = {
     "integral_provided": "What follows holds for {condition}.",
     "integral_unknown": "With unknown gains, the characteristic polynomial of plant and integrator is",
     "integral_gains": "The design of state feedback for plant and integrator together gives",
-    "integral_parts": "so that the gains of the state and of the integral are",
+    "integral_parts": "Hence the gains of the state and of the integral are",
     "integral_law": "The control law is",
     "integral_family": "The gain is not unique: other gains assign the same polynomial.",
     "integral_loop": "In the coordinates ($x$, $xi_I$) the closed loop has the system matrix",
@@ -76,4 +76,4 @@ FIGURES: dict[str, dict[str, object]] = {
     },
 }
 
-CONTINUES = ("integral_parts", "integral_together")
+CONTINUES = ("integral_together",)

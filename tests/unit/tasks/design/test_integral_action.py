@@ -47,3 +47,8 @@ def test_the_references_of_several_outputs_enter_through_a_unit_matrix() -> None
     plant = symobs.StateSpace("[0 1; 0 0]", "[1 0; 0 1]", "[1 0; 0 1]")
     page = symobs.integral_action(plant, poles=[-1, -2, -3, -4]).to("text")
     assert "(-A_cl)⁻¹[0; I]" in page  # not the column of zeros and ones
+
+
+def test_an_outline_has_words_before_the_gains() -> None:
+    outline = " ".join(symobs.integral_action(SERVO, poles="-1, -2, -3").to("text", detail="outline").split())
+    assert "Hence the gains of the state and of the integral are" in outline
