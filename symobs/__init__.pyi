@@ -50,7 +50,6 @@ from symobs.tasks.analysis.time_response.initial_state_covariance import Initial
 from symobs.tasks.analysis.time_response.matrix_exponential import MatrixExponential as _MatrixExponential
 from symobs.tasks.analysis.time_response.minimum_energy_input import MinimumEnergyInput as _MinimumEnergyInput
 from symobs.tasks.analysis.time_response.response_in_time import Response as _Response
-from symobs.tasks.analysis.time_response.zero_order_hold import ZeroOrderHold as _ZeroOrderHold
 from symobs.tasks.analysis.time_varying.time_varying_observability import TimeVaryingObservability as _TimeVaryingObservability
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback as _OutputFeedback
 from symobs.tasks.design.disturbance.disturbance_observer import DisturbanceObserver as _DisturbanceObserver
@@ -67,6 +66,7 @@ from symobs.tasks.design.reference.integral_action import IntegralAction as _Int
 from symobs.tasks.design.reference.output_regulation import OutputRegulation as _OutputRegulation
 from symobs.tasks.design.reference.tracking import TrackingDesign as _TrackingDesign
 from symobs.tasks.design.root_locus.root_locus import RootLocus as _RootLocus
+from symobs.tasks.result.result import Result as _Result
 
 _Number: TypeAlias = str | float | complex | Fraction | Decimal | Expr
 _IsPlant: TypeAlias = _CanonicalFormResult | _DecompositionResult | _DualResult | _ZeroOrderHoldResult
@@ -1126,7 +1126,7 @@ def unknown_input_observer(
 ) -> _UnknownInputObserverResult:
     """Estimate the state of ẋ = A x + B u + E d irrespective of d by  ż = F z + B_u u + B_y y,  x̂ = z + H (y − D u)."""
 
-class _ZeroOrderHoldResult(_ZeroOrderHold):
+class _ZeroOrderHoldResult(_Result):
     """What `zero_order_hold` returns."""
 
     @property
@@ -1137,11 +1137,17 @@ class _ZeroOrderHoldResult(_ZeroOrderHold):
     def C(self) -> ImmutableMatrix: ...
     @property
     def D(self) -> ImmutableMatrix: ...
+    @property
+    def stable_if(self) -> tuple[str, ...]: ...
+    @property
+    def transfer_function(self) -> Expr: ...
 
 def zero_order_hold(
     plant: _Plant,
     *,
     sampling_period: _Number | None = None,
+    rule: str | None = None,
+    controller: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
 ) -> _ZeroOrderHoldResult:

@@ -290,11 +290,13 @@ def _values(task: Task, problem: Problem) -> Iterator[tuple[str, Any]]:
         and problem.plant.pair_asked_for("auto") == "controllability"
     ):
         yield "of", "controllability"
+    parameters = specification.get("parameters")  # to name them declares them
+    plant = problem.plant.with_symbols(problem.plant.symbols.naming(parameters, "specification.parameters"))
     for name, kind in task.keywords.items():
         if name in keys and is_pattern(specification[keys[name]]):
             yield name.replace("poles", "polynomial"), _read_pattern(problem, task, name, keys[name])
         elif name in keys:
-            yield name, _read(specification[keys[name]], kind, name, problem.plant, task.name)
+            yield name, _read(specification[keys[name]], kind, name, plant, task.name)
         elif kind == "Horizon":
             yield name, read_horizon(problem.plant, None)
     if task.name == "stability_region" and "parameters" not in specification:

@@ -130,6 +130,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "member": ("simple", "decoupled"),
     "observer": ("full", "minimal"),
     "of": ("observability", "controllability"),
+    "rule": ("forward", "backward", "tustin"),
 }
 
 

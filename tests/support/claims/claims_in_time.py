@@ -327,8 +327,38 @@ def response_holds(result: Any, at: Setting) -> None:
         assert motion(world, result, x[0], u, start) == taylor(world, result.fields["output"], start)
 
 
+def rule_holds(result: Any, at: Setting) -> None:
+    """Hold C_d (zI − A_d)⁻¹ B_d + D_d, or F(z), to the transfer function at what s is replaced by."""
+    world = world_at(result, at)
+    T, z = digits_of(world, result.period), CONTEXT.mpc("0.3", "1.7")
+    rules = {"forward": (z - 1) / T, "backward": (z - 1) / (T * z), "tustin": 2 / T * (z - 1) / (z + 1)}
+    s = rules[result.rule]
+    if hasattr(result, "written"):
+        F = result.written.value
+        above, below = (
+            [digits_of(world, c) for c in part.coefficients(result.written.variable)]
+            for part in (F.numerator, F.denominator)
+        )
+        told = result.answer["transfer_function"]
+        mine = [[digits_of(world, c) for c in part.coefficients("z")] for part in (told.numerator, told.denominator)]
+        left, right = CONTEXT.polyval(mine[0], z), CONTEXT.polyval(above, s) / CONTEXT.polyval(below, s)
+        assert near(CONTEXT.matrix([left / CONTEXT.polyval(mine[1], z)]), CONTEXT.matrix([right]))
+        return
+    A, B = table(at.A), table(at.B)
+    C, D = (table(at.C), table(at.D)) if result.fields["C"] is not None else (CONTEXT.eye(A.rows), 0)
+    A_d, B_d = table(world.value(result.fields["A"])), table(world.value(result.fields["B"]))
+    if result.fields["C"] is None:
+        return
+    C_d, D_d = table(world.value(result.fields["C"])), table(world.value(result.fields["D"]))
+    sampled = C_d * CONTEXT.inverse(z * CONTEXT.eye(A.rows) - A_d) * B_d + D_d
+    assert near(sampled, C * CONTEXT.inverse(s * CONTEXT.eye(A.rows) - A) * B + D)
+
+
 def zero_order_hold_holds(result: Any, at: Setting) -> None:
     """Hold both matrices to mpmath's exponential of [A B; 0 0] T, which is [A_d B_d; 0 I]."""
+    if hasattr(result, "rule"):
+        rule_holds(result, at)
+        return
     world = world_at(result, at)
     if result.fields["A"] is None:
         assert result.fields["question"]

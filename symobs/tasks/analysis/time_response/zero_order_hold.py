@@ -19,6 +19,7 @@ from symobs.formula.tree.term import Term, letter
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.system import StateSpace
+from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.time_response.damping_cases import (
     DampingCases,
     Signs,
@@ -39,17 +40,18 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_polynomial,
     tell_question,
 )
+from symobs.tasks.analysis.time_response.sampling_rules import RULES, SampledController, SampledPlant
 from symobs.tasks.result import Result, choose, holds, method, task
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Collection, Iterator, Mapping
 
     from symobs.exact import Scalar
     from symobs.exact.time_functions.matrix_exponential import Exponential
     from symobs.formula.tree import Environment
     from symobs.proof.certificate.claims import Claim
     from symobs.proof.derivation.builder import Builder
-    from symobs.system.specification import Horizon, Name
+    from symobs.system.specification import Horizon, Name, TransferFunctionText
 
 
 @dataclass
@@ -57,7 +59,7 @@ class ZeroOrderHold(DampingCases):
     """A_d = Φ(T) with Φ′ = A Φ and Φ(0) = I, and B_d = ∫₀ᵀ Φ(t) B dt."""
 
     task: ClassVar[str] = "zero_order_hold"
-    letters = {"A": "A_zoh", "B": "B_zoh"}
+    letters = {"A": "A_zoh", "B": "B_zoh", "C": "C_zoh", "D": "D_zoh"}
     answered_by = ("A", "B")
     only_value = ("A", "B")
     main: ClassVar[str] = "A_d"
@@ -77,6 +79,13 @@ class ZeroOrderHold(DampingCases):
         at_period = {"A_d": found.matrix(period), "B_d": driven(period)}
         answer = {"exponential": found.matrix(TIME), "driven": driven(TIME)}
         return cls(plant, method_name, {**shared, **answer, **at_period, "chosen": chosen})
+
+    @classmethod
+    def fields_asked(cls, given: Collection[str]) -> tuple[str, ...]:
+        """Return A and B behind a hold, all four matrices by a rule, and the transfer function of a controller."""
+        if "controller" in given:
+            return ("transfer_function",)
+        return ("A", "B", "C", "D") if "rule" in given else cls.answered_by
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
@@ -190,15 +199,26 @@ def by_integral(plant: StateSpace, period: Any) -> ZeroOrderHold:
 
 
 @task
-def zero_order_hold(plant: StateSpace, *, sampling_period: Horizon = None, method: Name = "auto") -> Result:
+def zero_order_hold(
+    plant: StateSpace,
+    *,
+    sampling_period: Horizon = None,
+    rule: Name | None = None,
+    controller: TransferFunctionText = None,
+    method: Name = "auto",
+) -> Result:
     """Return the plant behind a zero-order hold, x_{k+1} = A_d x_k + B_d u_k, with A_d = e^{AT}, B_d = ∫₀ᵀ e^{At} B dt.
 
     plant            n states, continuous time; B must be given
     sampling_period  T > 0, the sampling period: a symbol or a number ("T" if left out)
-    Returns A, B, C, D of the sampled plant.  In Python `sampled` is this plant, for every task in discrete time: e^{−T},
-    cos T and sin T beside T are independent letters there.  Where the sign of a discriminant decides between oscillation
-    and none, conditions hold the branch that is shown and cases the others.  Modes of a plant in numbers that have no closed
-    form stand in sums over roots, `RootSum`, with `decimals` beside; undecided where such modes have parameters.
+    rule             instead of the hold what replaces s: `tustin` 2(z − 1)/(T(z + 1)), `forward` (z − 1)/T,
+                     `backward` (z − 1)/(T z)
+    controller       with a rule F(s), improper ones too: transfer_function is F(z)
+    Returns A, B, C, D of the sampled plant; with the rule `forward` stable_if, where it is stable.  In Python `sampled` is
+    the plant behind the hold, for every task in discrete time: e^{−T}, cos T and sin T beside T are independent letters.
+    Where the sign of a discriminant decides between oscillation and none, conditions hold the branch that is shown and
+    cases the others.  Modes of a plant in numbers that have no closed form stand in sums over roots, `RootSum`, with
+    `decimals` beside; undecided where such modes have parameters.
     Raises `InputError` in discrete time, and for a period that is not positive or infinite.
     Source: K. J. Åström and B. Wittenmark, Computer-Controlled Systems, 3rd ed., ch. 2.
     """
@@ -209,4 +229,22 @@ def zero_order_hold(plant: StateSpace, *, sampling_period: Horizon = None, metho
     if T == INFINITE:
         message = "the sampling period inf is no number"
         raise InputError(message, where="specification.sampling_period", repair='write "T", or a number above 0')
+    if rule is None and controller is not None:
+        message, repair = "a controller is carried over by a rule", 'give rule = "tustin", "forward" or "backward"'
+        raise InputError(message, where="specification.rule", repair=repair)
+    if rule is not None:
+        return _by_rule(plant, rule, T, controller).asked(method)
     return over_horizon(lambda: choose("zero_order_hold", method, "integral").solve(plant, T), "sampling_period")
+
+
+def _by_rule(plant: StateSpace, rule: str, T: Scalar, controller: object) -> Result:
+    """Return the plant or the controller that a rule makes; raises `InputError` for no rule."""
+    if rule not in RULES:
+        raise InputError(f"{rule!r} is no rule", where="specification.rule", repair=f"write {', '.join(RULES)}")
+    signs = {**plant.symbols.signs, **{name: "positive" for name in T.names if str(T) == name}}
+    plant = plant.with_symbols(replace(plant.symbols, signs=signs))
+    if controller is None:
+        return SampledPlant.of(plant, rule, T)
+    plant = plant.knowing(controller)
+    written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
+    return SampledController.of(plant, rule, T, written)
