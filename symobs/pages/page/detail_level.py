@@ -1,8 +1,9 @@
 """Levels of detail: the filter on the steps of a page.
 
-`full` tells everything. `outline` keeps headings, what is defined, tables and pictures, without the running
-explanation. `answer` keeps what is given, conditions, cases, findings, the answers and their checks.  Both leave out only
-what is known to explain; whatever conditions an answer stays, and a sentence that stays keeps what it speaks of.
+`full` tells everything. `outline` keeps headings, what is defined with the words before it, tables and pictures, without
+the running explanation. `answer` keeps what is given, conditions, cases, findings, the answers and their checks.  Both
+leave out only what is known to explain; whatever conditions an answer stays, and a sentence that stays keeps what it
+speaks of.
 """
 
 from __future__ import annotations
@@ -93,8 +94,10 @@ def _shortened(step: Step, detail: str) -> Iterator[Step]:
             yield answer if _introduces(step.sentence) else replace(answer, sentence=None)
         case Define(sentence=sentence) | Equal(sentence=sentence) if _spells_out(step) or conditions(sentence):
             yield step
-        case Define() | Diagram() if detail == "outline":
-            yield step if isinstance(step, Diagram) else replace(step, sentence=None)
+        case Diagram() if detail == "outline":
+            yield step
+        case Define(sentence=sentence) if detail == "outline":
+            yield step if _introduces(sentence) else replace(step, sentence=None)
         case Tabulate(findings=findings) if detail == "answer":
             yield from (Note(finding) for finding in findings if finding.key not in EXPLAINS)
         case RegionSummary(findings=findings):
