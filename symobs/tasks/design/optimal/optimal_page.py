@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, decimal_places
 from symobs.exact.core.generators import all_roots, function_named
 from symobs.exact.floating.riccati_check import excess, is_proved
 from symobs.exact.linear_algebra.krylov import Krylov
@@ -293,7 +293,8 @@ def _tell_digits(page: Builder, result: OptimalGain) -> None:
     page.conclude(f"optimal_{kind}_enclosed", radius=radius)
     pencil, plant = _pencil(page, result, page[f"{letter}_r"]), page.plant
     chi = page.define(f"chi_{letter}", pencil.apply("det"), silent=True)
-    if is_matched:
+    coefficients = chi.scalar.coefficients(plant.variable)
+    if is_matched and all(decimal_places(c) is not None for c in coefficients):  # others are too long to be read
         page.equal(relation(pencil.apply("det"), _in_decimals(page, chi.scalar)), say="optimal_loop_polynomial")
     found = stability(as_scalar(chi.value), plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
     P, gain = near["P_r"], result.turned(near[f"{letter}_r"])
