@@ -191,9 +191,17 @@ def _piece(kind: str, argument: Scalar) -> Scalar:
     if argument.is_constant:
         number = argument.fraction()
         return Scalar.of(abs(number) if kind == "abs" else (number > 0) - (number < 0))
-    if not leads_with_minus(argument):
-        return generator(kind, argument)
-    return generator(kind, -argument) * (1 if kind == "abs" else -1)
+    if leads_with_minus(argument):
+        return _piece(kind, -argument) * (1 if kind == "abs" else -1)
+    if argument.names and all(map(_is_positive_number, argument.names)) and min(c for c, _ in argument.terms()) > 0:
+        return argument if kind == "abs" else ONE
+    return generator(kind, argument)
+
+
+def _is_positive_number(name: str) -> bool:
+    """Return whether a generator is π or the root of a number."""
+    found = function_named(name)
+    return name == PI if found is None else found.kind == "sqrt" and found.argument.is_constant
 
 
 def root_of(radicand: Scalar) -> Scalar:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
-from symobs.exact.core.generators import all_roots, substitute
+from symobs.exact.core.generators import PIECES, all_roots, functions_in, substitute
 from symobs.formula.tree import At, Block, Derivative, Letter, Literal, SymbolList
 from symobs.proof.derivation.builder import relation
+from symobs.system.equilibria import by_signs
 from symobs.tasks.analysis.motion_page import state_motion
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from symobs.formula.tree import Formula
     from symobs.formula.tree.term import Term
@@ -49,6 +50,7 @@ def state_linearisation(page: Builder) -> None:
     ]
     moved = [_at_equilibrium(given, function) for function in (*functions, *jacobians)]
     state_nonlinear(page, given, *moved, *(value for _, value in given.equilibrium), m.A, m.B, m.C, m.D)
+    page.where(*_pieces_by_signs(moved, plant.symbols.signs))
     page.assume_positive(given.positive)
     f, time = page["f_x"], "discrete" if plant.is_discrete else "continuous"
     rest = Matrix.of([[dict(given.equilibrium)[name] if plant.is_discrete else Scalar.of(0)] for name in given.states])
@@ -69,6 +71,12 @@ def state_linearisation(page: Builder) -> None:
             between = [_there(page, given, Literal(jacobian))] if is_told else []
             lines.append(relation(page[matrix], columns, *between, value))
     page.equal(*lines, say="linearised")
+
+
+def _pieces_by_signs(values: Sequence[Matrix], signs: Mapping[str, str]) -> list[Scalar]:
+    """Return what vanishes since the signs of the parameters decide |x| and the signs that occur."""
+    pieces = [f.value for f in functions_in(values) if f.kind in PIECES]
+    return [piece - decided for piece in pieces if (decided := by_signs(piece, signs)) != piece]
 
 
 def _at_equilibrium(given: Nonlinear, value: Matrix) -> Matrix:
