@@ -79,6 +79,8 @@ def test_a_coordinate_that_is_free_is_a_parameter_where_the_linearisation_depend
 
 def test_a_rocket_with_air_resistance_flies_on() -> None:
     """M. Herber, problem 2.7, with b = m = g = 1: at v = sqrt(2) the thrust is 3, and the slope of v^2 is 2 sqrt(2)."""
-    plant = symobs.linearize("[-sign(v)*v^2 + T - 1]", "v", states="v", inputs="T", equilibrium={"v": "sqrt(2)", "T": 3})
+    plant = symobs.linearize(
+        "[-sign(v)*v^2 + T - 1]", "v", states="v", inputs="T", equilibrium={"v": "sqrt(2)", "T": 3}
+    )
     assert sp.Matrix([-2 * sp.sqrt(2)]) == plant.A
     assert "sgn" in symobs.characteristic_polynomial(plant).to("text")
