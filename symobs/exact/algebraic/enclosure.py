@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 #: Bits that are tried in turn until an enclosure keeps clear of 0.
 _BITS = (64, 256, 1024, 4096)
-_KINDS = {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "CRootOf"}
+_KINDS = {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "log", "asin", "acos", "atan", "CRootOf"}
 
 
 def is_number(value: Scalar) -> bool:

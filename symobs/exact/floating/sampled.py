@@ -191,7 +191,8 @@ def at_points(name: str, points: Mapping[str, Any]) -> Any:
         given = np.broadcast_arrays(*(points[symbol] for symbol in sorted(function.symbols)))
         rows = zip(*(array.tolist() for array in given), strict=True)
         return np.array([_sum_at(name, dict(zip(sorted(function.symbols), row, strict=True))) for row in rows])
-    return getattr(np, function.kind)(ArrayFunction([argument])(points)[0])
+    kind = f"arc{function.kind[1:]}" if function.kind in {"asin", "acos", "atan"} else function.kind
+    return getattr(np, kind)(ArrayFunction([argument])(points)[0])
 
 
 def _sum_at(name: str, point: Mapping[str, float]) -> float:

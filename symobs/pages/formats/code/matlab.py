@@ -8,6 +8,8 @@ from symobs.pages.formats.code.program import number_rows, program_of
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from symobs.tasks.result import Document
 
 _TEMPLATE = """function [{output}, state] = {name}_step(state, {arguments})
@@ -22,8 +24,8 @@ D = {D};
 if isempty(state)
     state = zeros({order}, 1);
 end
-inputs = [{joined}];
-{output} = C * state + D * inputs;
+inputs = [{joined}]{less};
+{output} = C * state + D * inputs{plus};
 state = A * state + B * inputs;
 end
 """
@@ -44,12 +46,18 @@ class Matlab:
             **program.slots(_rows, "% "),
             arguments=", ".join(name for name, _ in program.inputs),
             joined="; ".join(f"{name}(:)" for name, _ in program.inputs),
+            less=f" - {_column(program.at_rest[0])}" if program.at_rest else "",
+            plus=f" + {_column(program.at_rest[1])}" if program.at_rest else "",
         )
 
     def answers(self, document: Document) -> str:
         """Return the numbers as assignments."""
         rows = number_rows(document, "a matrix of MATLAB")
         return "".join(f"{name} = {_rows(table)};\n" for name, table in rows.items())
+
+
+def _column(values: Sequence[float]) -> str:
+    return f"[{'; '.join(map(repr, values))}]"
 
 
 def _rows(table: list[list[str]]) -> str:

@@ -19,15 +19,15 @@ protected
   constant Real B[{order}, {width}] = {B};
   constant Real C[{outputs}, {order}] = {C};
   constant Real D[{outputs}, {width}] = {D};
-  {state} x[{order}](each start = 0, each fixed = true);
+{rests}  {state} x[{order}](each start = 0, each fixed = true);
 equation
 {equations}
 end {kind};
 """
 _CONTINUOUS = """  der(x) = A * x + B * {inputs};
-  {output} = C * x + D * {inputs};"""
+  {output} = C * x + D * {inputs}{plus};"""
 _SAMPLED = """  when sample(0, {period}) then
-    {output} = C * pre(x) + D * {inputs};
+    {output} = C * pre(x) + D * {inputs}{plus};
     x = A * pre(x) + B * {inputs};
   end when;"""
 
@@ -52,13 +52,21 @@ class Modelica:
         joined = f"cat(1, {inputs})" if len(program.inputs) > 1 else inputs
         signals = [f"  input Real {name}[{size}];" for name, size in program.inputs]
         equations = (_CONTINUOUS if period is None else _SAMPLED).format(
-            inputs=joined, output=program.output[0], period="" if period is None else repr(float(period))
+            inputs=f"({joined} - inputs_at_rest)" if program.at_rest else joined,
+            output=program.output[0],
+            period="" if period is None else repr(float(period)),
+            plus=" + output_at_rest" if program.at_rest else "",
+        )
+        rests = "".join(
+            f"  constant Real {which}_at_rest[{len(values)}] = {{{', '.join(map(repr, values))}}};\n"
+            for which, values in zip(("inputs", "output"), program.at_rest or (), strict=False)
         )
         return _TEMPLATE.format(
             **program.slots(_rows, "  // "),
             signals="\n".join([*signals, f"  output Real {program.output[0]}[{program.output[1]}];"]),
             state="Real" if period is None else "discrete Real",
             equations=equations,
+            rests=rests,
         )
 
 

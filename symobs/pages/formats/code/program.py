@@ -46,6 +46,8 @@ class CodeProgram(NamedTuple):
     numbers: Realisation
     period: Fraction | None
     lines: tuple[str, ...]
+    #: What inputs and output are where a nonlinear plant rests: the equation is one of deviations from these.
+    at_rest: tuple[tuple[float, ...], tuple[float, ...]] | None = None
 
     def slots(self, table: Callable[[list[list[str]]], str], comment: str = "") -> dict[str, object]:
         """Return what the templates of all languages name: sizes, signals, matrices as `table` writes them, comments."""
@@ -85,7 +87,40 @@ def program_of(document: Document, *, in_continuous_time: bool = False) -> CodeP
         _proof(plant, controller, numbers, period),
         *_deviation(controller, sampled, numbers, plant, period),
     ]
-    return CodeProgram(controller.name, controller.inputs, controller.output, numbers, period, tuple(lines))
+    at_rest = _at_rest(controller, plant)
+    if at_rest is not None:
+        lines.insert(1, _where_it_rests(controller, at_rest))
+    return CodeProgram(controller.name, controller.inputs, controller.output, numbers, period, tuple(lines), at_rest)
+
+
+def _at_rest(controller: Controller, plant: StateSpace) -> tuple[tuple[float, ...], tuple[float, ...]] | None:
+    """Return the inputs and the output of a program at the equilibrium of a nonlinear plant; None for a linear one.
+
+    What the equilibrium leaves free is measured from where the plant is to rest: 0.
+    """
+    given = plant.nonlinear
+    if given is None:
+        return None
+    free = dict.fromkeys(given.free, Scalar.of(0))
+    point = {name: free.get(name, value).substitute(free) for name, value in given.equilibrium}
+    of = {"x_hat": [point[name] for name in given.states], "u": [point[name] for name in given.inputs]}
+    of["y"] = [] if given.h is None else [*given.h.substitute(point).entries]
+    require_numbers([Matrix.column(values) for values in of.values() if values], "code")
+
+    def doubles(name: str, size: int) -> tuple[float, ...]:
+        return tuple(map(nearest_double, (of.get(name, []) + [Scalar.of(0)] * size)[:size]))
+
+    inputs = tuple(value for name, size in controller.inputs for value in doubles(name, size))
+    return inputs, doubles(*controller.output)
+
+
+def _where_it_rests(controller: Controller, at_rest: tuple[tuple[float, ...], tuple[float, ...]]) -> str:
+    (inputs, output), place, told = at_rest, 0, []
+    for name, size in controller.inputs:
+        told.append(f"{name} = {[*inputs[place : place + size]]}")
+        place += size
+    told.append(f"{controller.output[0]} = {[*output]}")
+    return f"The plant rests at {', '.join(told)}: the equation is one of deviations from there."
 
 
 def _of_document(document: Document) -> tuple[Result, Controller]:

@@ -8,6 +8,7 @@ from symobs.pages.formats.code.program import program_of
 from symobs.tasks.result import output_format
 
 if TYPE_CHECKING:
+    from symobs.pages.formats.code.program import CodeProgram
     from symobs.tasks.result import Document
 
 _TEMPLATE = '''"""{lines}"""
@@ -16,7 +17,7 @@ A = {A}
 B = {B}
 C = {C}
 D = {D}
-
+{rests}
 
 class {kind}:
     """{kind} with its state; call step once a period."""
@@ -27,9 +28,9 @@ class {kind}:
 
     def step(self, {arguments}):
         """Return {output} from lists of numbers ({sizes}), and go on by one period."""
-        state, inputs = self.state, [{joined}]
+        state, inputs = self.state, {inputs}
         self.state = [_dot(a, state) + _dot(b, inputs) for a, b in zip(A, B)]
-        return [_dot(c, state) + _dot(d, inputs) for c, d in zip(C, D)]
+        return [{begin}_dot(c, state) + _dot(d, inputs) for {each} in zip({tables})]
 
 
 def _dot(row, column):
@@ -51,8 +52,23 @@ class Python:
         return _TEMPLATE.format(
             **program.slots(_rows) | {"lines": "\n\n".join(program.lines) + "\n"},
             arguments=", ".join(name for name, _ in program.inputs),
-            joined=", ".join(f"*{name}" for name, _ in program.inputs),
+            **_at_rest(program),
         )
+
+
+def _at_rest(program: CodeProgram) -> dict[str, str]:
+    """Return what differs where the equation is one of deviations."""
+    joined = f"[{', '.join(f'*{name}' for name, _ in program.inputs)}]"
+    if program.at_rest is None:
+        return {"rests": "", "inputs": joined, "begin": "", "each": "c, d", "tables": "C, D"}
+    inputs, output = ([*values] for values in program.at_rest)
+    return {
+        "rests": f"INPUTS_AT_REST = {inputs}\nOUTPUT_AT_REST = {output}\n",
+        "inputs": f"[value - rest for value, rest in zip({joined}, INPUTS_AT_REST)]",
+        "begin": "rest + ",
+        "each": "rest, c, d",
+        "tables": "OUTPUT_AT_REST, C, D",
+    }
 
 
 def _rows(table: list[list[str]]) -> str:
