@@ -103,32 +103,35 @@ def linearize(
     return plant
 
 
+_TYPED = ("f", "h", "states", "inputs", "coordinates", "equations", "kinetic", "potential", "forces")
+
+
 def without_equilibrium(
-    f: object = None,
-    h: object = None,
     *,
-    states: str | Sequence[Any] = "",
-    inputs: str | Sequence[Any] = (),
     equilibrium: Mapping[Any, Any] | None = None,
-    coordinates: str | Sequence[Any] = "",
-    equations: str | Sequence[Any] | None = None,
-    kinetic: object = None,
-    potential: object = None,
-    forces: Mapping[str, Any] | None = None,
     dt: object = 0,
     symbols: Mapping[str, Any] | Symbols | None = None,
+    **typed: Any,
 ) -> StateSpace:
-    """Return a nonlinear plant whose equilibria are asked for: there is no linearisation, and A is 0."""
-    given, known = nonlinear_plant(
-        f, h, states, inputs, coordinates, equations, kinetic, potential, forces, dt, symbols, equilibrium
-    )
+    """Return a nonlinear plant whose equilibria are asked for: there is no linearisation, and A is 0.
+
+    The keywords are those of `linearize`.  Raises `InputError` for any other.
+    """
+    if unknown := sorted(typed.keys() - _TYPED):
+        message = f"{shown(unknown[0], 40)} is no part of a nonlinear plant"
+        raise InputError(message, where="plant", repair=f"it has {', '.join(_TYPED)}, equilibrium, dt and symbols")
+    parts = {name: typed.get(name) for name in _TYPED} | {
+        "states": typed.get("states", ""),
+        "inputs": typed.get("inputs", ()),
+    }
+    given, known = nonlinear_plant(**parts, dt=dt, symbols=symbols, equilibrium=equilibrium)
     names = given.states + given.inputs
     signs = {**known.signs, **{name: known.sign(name) for name in names}}
     point = _point({} if equilibrium is None else equilibrium, names, replace(known, signs=signs), given)
     held = tuple((name, point[name]) for name in given.inputs if name in point)
     plant = StateSpace(Matrix.zeros(len(given.states), len(given.states)), dt=dt, symbols=known)
     plant.nonlinear = replace(given, held=held)
-    plant.is_in_decimals = has_decimals([f, equations, kinetic, potential, h, equilibrium])
+    plant.is_in_decimals = has_decimals([*typed.values(), equilibrium])
     return plant
 
 

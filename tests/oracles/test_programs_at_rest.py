@@ -37,7 +37,9 @@ def cart_and_pendulum() -> Callable[[Any, float], Any]:
     solved = sp.solve(plain, w)
     state = sp.symbols("a b c d")
     names = [(x.diff(t), state[2]), (theta.diff(t), state[3]), (x, state[0]), (theta, state[1])]
-    return sp.lambdify([state, F], [solved[each].subs(names) for each in w], "numpy")  # noqa: TID251 - our own
+    found: Callable[[Any, float], Any]
+    found = sp.lambdify([state, F], [solved[each].subs(names) for each in w], "numpy")  # noqa: TID251 - our own
+    return found
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs a compiler of C")
