@@ -50,3 +50,19 @@ def test_a_loop_with_an_integrator_is_known() -> None:
     found: Any = symobs.margins(plant, controller="1").fields
     assert [(str(c["omega"]), str(c["value"])) for c in found["axis_crossings"]] == [("sqrt(2)", "-5/3")]
     assert (found["open_loop_unstable"], found["closed_loop_unstable"], found["encirclements"]) == (0, 2, -2)
+
+
+@pytest.mark.parametrize(
+    ("controller", "said"),
+    [
+        # Ogata, Modern Control Engineering, 5th ed., Example 6-1: stable for k < 6, crossing at sqrt(2)
+        ("2", "0 without feedback and 0 with it|meets the real axis at -0.333333 for the frequency 1.414214"),
+        ("12", "0 without feedback and 2 with it|counterclockwise -2 times|meets the real axis at -2 for"),
+        ("6", "others lie on the boundary of stability|meets the real axis at -1 for"),
+    ],
+)
+def test_the_page_tells_the_numbers_of_the_criterion(controller: str, said: str) -> None:
+    plant = symobs.StateSpace.from_transfer_function("1/(s*(s+1)*(s+2))")
+    page = " ".join(str(symobs.margins(plant, controller=controller).to("text")).split())
+    for words in said.split("|"):
+        assert words in page
