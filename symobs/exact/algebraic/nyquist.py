@@ -72,7 +72,9 @@ def told_of(kind: str, closed: Scalar, opened: Scalar, variable: str) -> list[di
     found, discrete = nyquist(closed, opened, variable), variable == "z"
     if kind == "counts":
         names = {"before": "open_loop_unstable", "after": "closed_loop_unstable", "around": "encirclements"}
-        return [{name: str(found[field]) for name, field in names.items() if found[field] is not None}]
+        return [
+            {name: str(found[field]).replace("-", "−") for name, field in names.items() if found[field] is not None}
+        ]
     if kind == "delay":
         delay = found["delay_margin"]
         return [] if delay is None else [{} if delay == INFINITE else {"delay": delay}]

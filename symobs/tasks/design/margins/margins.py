@@ -21,6 +21,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation.builder import Builder, predicate
+from symobs.stability.frequency_plots import bode_picture, nyquist_picture
 from symobs.system.specification import desired_polynomial, in_common_field, read_gain, reject_both
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import given
@@ -430,6 +431,20 @@ def _frequency_response(page: Builder, result: Margins) -> None:
     for kind in ("axis", "level"):
         for told in told_of(kind, *loop):
             page.remark(f"margins_{kind}{clock}", **_rounded(page, told))
+    _pictures(page, result)
+
+
+def _pictures(page: Builder, result: Margins) -> None:
+    """Draw the Bode and the Nyquist picture."""
+    variable = page.plant.variable
+    loop = (result.answer["closed"] - result.answer["opened"]) / result.answer["opened"]
+    N, P = loop.numerator, loop.denominator
+    subject = page("(chi_cl - chi_o) / chi_o")
+    page.plot(bode_picture(N, P, variable), subject)
+    crossed = [
+        float(told["value"]) for told in told_of("axis", result.answer["closed"], result.answer["opened"], variable)
+    ]
+    page.plot(nyquist_picture(N, P, variable, crossed), subject)
 
 
 def _delay(page: Builder, result: Margins) -> None:
