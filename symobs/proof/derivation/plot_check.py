@@ -9,7 +9,7 @@ from cmath import phase
 from fractions import Fraction
 from functools import lru_cache
 from itertools import chain, dropwhile, islice, pairwise
-from math import comb, degrees, lcm, log10
+from math import comb, degrees, lcm, log10, tau
 from operator import mul
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -192,17 +192,20 @@ def faults_of_frequency(
     is_bode, (across, upwards) = isinstance(picture, BodePicture), picture.window
     least = min(across[1] - across[0], upwards[1] - upwards[0])
     slack = Fraction(1, 1 << 40)
-    if picture.discrete != discrete or least <= 0 or min(sizes) < -slack or (is_bode and max(sizes) > slack):
+    along = [phase(complex(*map(float, s))) % tau if discrete else s[1] for s in picture.contour]
+    near, pairs = least * _NEAR_POLE, [(shifted(above, s)[0], shifted(below, s)[0]) for s in picture.contour]
+    beside = [_square(n) > _square(p) for size, (n, p) in zip(sizes, pairs, strict=True) if size > slack]  # near a pole
+    is_along = along == sorted(along) and min(sizes) >= -slack and all(beside)
+    if picture.discrete != discrete or least <= 0 or not is_along or (is_bode and beside):
         yield "places on the boundary of stability, in a window"
         return
-    near, pairs = least * _NEAR_POLE, [(shifted(above, s)[0], shifted(below, s)[0]) for s in picture.contour]
     if isinstance(picture, BodePicture):
         lists = zip(picture.contour, picture.across, picture.levels, picture.phases, pairs, strict=True)
         for place, x, level, angle, (n, p) in lists:
             value, at = complex(*map(float, n)) / complex(*map(float, p)), complex(*map(float, place))
             off = abs(float(angle) - degrees(phase(value))) % 360
             told = log10(phase(at) if discrete else at.imag), 20 * log10(abs(value))
-            if max(abs(told[0] - float(x)), abs(told[1] - float(level)), min(off, 360 - off) / 100) > float(near):
+            if max(abs(told[0] - float(x)), abs(told[1] - float(level)), min(off, 360 - off) / 10) > float(near):
                 yield f"the value at {written(place)}"
         jumps = [abs(b - a) for a, b in pairwise(picture.phases)]
         if list(picture.across) != sorted(picture.across) or max(jumps, default=0) > 200:
