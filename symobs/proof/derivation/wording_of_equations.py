@@ -215,6 +215,13 @@ def is_on_locus(said: SentenceContext, kind: str, opened: str, moved: str) -> bo
     return told.keys() == said.slots.keys() and told in landmarks(kind, p, q, here.variable)
 
 
+def leads_with(said: SentenceContext, letter: str, sign: str) -> bool:
+    """Return whether the leading coefficient of a polynomial has a sign."""
+    here = said.environment
+    lead = as_scalar(evaluate(Letter(letter), here, Exact(here))).coefficients(here.variable)[0]
+    return sign_of(lead, here.signs) == sign
+
+
 def has_asymptotes(said: SentenceContext, opened: str, moved: str) -> bool:
     """Return whether n − m and (Σ poles − Σ zeros)/(n − m) are told of p + k q."""
     here = said.environment
