@@ -124,8 +124,7 @@ class SampledPlant(_Sampled, Result):
         m, alpha, T = self.plant.matrices, RULES[self.rule], page.value(self.period)
         with page.section("sampling_rules"):
             a, b = page.value(alpha * self.period), page.value((1 - alpha) * self.period)
-            image = _image(page, self.rule, self.period)
-            page.remark(f"sampling_{self.rule}", image=image)
+            page.remark(f"sampling_{self.rule}")
             explicit = self.rule == "forward"
             A = page("I + {T} A", T=T) if explicit else page("(I - {a} A)^-1", a=a)
             if self.rule == "tustin":
@@ -140,7 +139,22 @@ class SampledPlant(_Sampled, Result):
                 page.define("D_zoh", through, self.answer["D"], answer=True, closing=False)
             elif m.has_output:
                 page.remark("sampling_output_kept")
+            self._write_response(page)
             self._write_stability(page)
+
+    def _write_response(self, page: Builder) -> None:
+        """Write that the transfer function is that of the plant at what s is replaced by."""
+        if not self.plant.matrices.has_output:
+            return
+        z, image, own = page.value(Scalar.symbol("z")), _image(page, self.rule, self.period), self.rule != "forward"
+        names = ("C_zoh", "D_zoh") if own else ("C", "D")
+        sampled = page(f"{names[0]} ({{z}} I - A_zoh)^-1 B_zoh", z=z)
+        plant = page("C ({image} I - A)^-1 B", image=image)
+        if own:
+            sampled = sampled + page[names[1]]
+        if self.plant.matrices.has_feedthrough:
+            sampled, plant = (sampled if own else sampled + page["D"]), plant + page["D"]
+        page.equal(relation(sampled, plant), say="sampling_response")
 
     def _write_stability(self, page: Builder) -> None:
         """Write what the rule does to stability."""
@@ -216,14 +230,16 @@ class SampledController(_Sampled, Result):
         F = self.written.value
         given(page)
         with page.section("sampling_rules"):
-            page.define("F", factored_form(page, F), say="sampling_controller", closing=False)
-            image = _image(page, self.rule, self.period)
-            page.remark(f"sampling_{self.rule}", image=image)
             page.set("n_F", F.numerator)
             page.set("d_F", F.denominator)
+            page.define(
+                "F", page["n_F"] / page["d_F"], factored_form(page, F), say="sampling_controller", closing=False
+            )
+            page.remark(f"sampling_{self.rule}")
+            image = _image(page, self.rule, self.period)
             quotient = image.apply("n_F_at") / image.apply("d_F_at")
             value = self.answer["transfer_function"]
-            page.define("F_zoh", quotient, value, say="sampling_controller_is", answer=True, closing=False)
+            page.define("F_zoh", quotient, value, say="sampling_controller_is", answer=True, closing=False, image=image)
             if self.rule != "forward":
                 page.remark(f"sampling_{self.rule}_stability")
             else:

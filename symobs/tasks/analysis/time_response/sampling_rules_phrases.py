@@ -4,11 +4,12 @@ from __future__ import annotations
 
 PHRASES: dict[str, str] = {
     "sampling_rules": "Sampling by a rule.",
-    "sampling_forward": "The forward rule replaces the derivative by the forward difference, that is, $s$ by {image}.",
-    "sampling_backward": "The backward rule replaces the derivative by the backward difference, that is, $s$ by {image}.",
-    "sampling_tustin": "Tustin's rule integrates by trapezoids, that is, it replaces $s$ by {image}.",
+    "sampling_forward": "The forward rule replaces the derivative by the forward difference over one sampling period.",
+    "sampling_backward": "The backward rule replaces the derivative by the backward difference over one sampling period.",
+    "sampling_tustin": "Tustin's rule integrates by trapezoids over one sampling period.",
     "sampling_matrices": "Written as a plant in the state of discrete time, this has the matrices",
     "sampling_output_kept": "The output equation is that of the plant.",
+    "sampling_response": "The transfer function is that of the plant at what replaces $s$:",
     "sampling_tustin_stability": "The rule maps the open left half-plane onto the open unit disc: what is sampled is stable if and only if the original is, for every sampling period§.",
     "sampling_backward_stability": "The rule maps the open left half-plane into the open unit disc: what is stable stays stable for every sampling period, and what is unstable may become stable§.",
     "sampling_forward_disc": "The rule carries a pole $p$ to 1 plus the sampling period times $p$: what is sampled is stable only for sampling periods that are small enough, and never if the original is not§.",
@@ -18,7 +19,7 @@ PHRASES: dict[str, str] = {
     "sampling_not_stable": "Not all its roots have negative real part, so the sampled plant is not stable.",
     "sampling_pole_at_zero": "A pole at 0 is carried to 1 for every sampling period, so the sampled plant is not asymptotically stable:",
     "sampling_controller": "The controller in continuous time is",
-    "sampling_controller_is": "With its numerator $n_F$ and its denominator $d_F$ the controller in discrete time is",
+    "sampling_controller_is": "Hence $s$ is replaced by {image}, and the controller in discrete time is",
 }
 
 QUESTIONS: dict[str, str] = {
@@ -38,6 +39,7 @@ ASSERTS: dict[str, tuple[str, ...]] = {
 DEMANDS: dict[str, str] = {
     "sampling_stable": "about q_s",
     "sampling_not_stable": "about q_s",
+    "sampling_controller_is": "applies_image",
 }
 
 RESTS_ON: dict[str, str] = {
@@ -51,6 +53,6 @@ THEOREMS: dict[str, str] = {
     "sampling_maps": "astrom1997, ch. 8",
 }
 
-NAMING = ("sampling_forward", "sampling_backward", "sampling_tustin")
+NAMING = ("sampling_controller_is",)
 
 EXPLAINS = ("sampling_forward_stability",)
