@@ -65,7 +65,8 @@ LETTERS: dict[str, LetterForm] = {
     "T_q": LetterForm("T", "T", "kinetic energy"),
     "V_q": LetterForm("V", "V", "potential energy"),
     "Q_q": LetterForm("Q", "Q", "generalised forces"),
-    "M_q": LetterForm("M", "M", "matrix of the highest derivatives in the equations of motion"),
+    **{f"p_q{k}": LetterForm(f"p_{k}", f"p{'₀₁₂₃₄₅₆₇₈₉'[k]}", "generalised momentum") for k in range(1, 10)},
+    "M_q": LetterForm("M(q)", "M(q)", "matrix of the highest derivatives in the equations of motion"),
     **{
         f"A_e{k}": LetterForm(rf"A_{k}", f"A{'₀₁₂₃₄₅₆₇₈₉'[k]}", "matrix of the linearisation at an equilibrium")
         for k in range(1, 10)

@@ -51,7 +51,7 @@ METHODS = [*sorted(methods()), *(f"{task}/auto" for task in TASKS)]
 PICKLED = every(4, METHODS)
 FORMS = ("json", "text", "latex")
 
-A, B, C = [["0", "1"], ["-k/m", "-2"]], [["0"], ["1/m"]], [["1", "c"]]
+A, B, C = [["0", "1"], ["-a/m", "-2"]], [["0"], ["1/m"]], [["1", "c"]]
 POLES = ["-1", "-p"]
 
 
@@ -283,12 +283,14 @@ SAMPLES: dict[str, tuple[tuple[Any, Any, Any], list[str]]] = {
 @pytest.mark.parametrize("name", every(2, METHODS, 1))
 def test_attributes_are_sympy_objects_and_never_of_the_kernel(name: str) -> None:
     for plant, poles in SAMPLES.values():
+        if not is_for(name, symobs.StateSpace(*plant), poles):
+            continue
         result = solve(name, symobs.StateSpace(*plant), poles)
         for key in result.fields:
             assert all(map(is_public, parts_of(getattr(result, key)))), key
         for case in result.cases:
             assert all(map(is_public, case.when))
-        assert all(map(is_public, result.conditions))
+        assert all(map(is_public, parts_of(result.conditions)))
         assert set(result.fields) <= set(dir(result))
         for part in (result.plant.A, result.plant.B, result.plant.C, result.plant.D):
             assert isinstance(part, sympy.ImmutableMatrix)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from flint import acb, arb, ctx
 
 from symobs.exact.algebraic.real_algebraic import RealRoot
-from symobs.exact.core.generators import KINDS, PI, function_named
+from symobs.exact.core.generators import INVERSES, KINDS, PI, function_named
 from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.ideals import TooLarge
@@ -81,12 +81,18 @@ class _Enclosed:
             return acb(arb.pi()) if name == PI and PI not in self.point else _ball(self.point[name])
         if isinstance(found, RealRoot):
             return acb(found.number.ball(ctx.prec))
-        if found.kind not in {*KINDS, "sqrt"}:
+        if found.kind not in {*KINDS, *INVERSES, "sqrt"}:
             raise TooLarge(f"{found.kind} is not evaluated here")
         inside = self.value(found.argument, real=real)
         if found.kind == "sqrt" and real and not inside.real > 0:
             raise Outside
+        if found.kind in INVERSES and not (found.kind == "atan" or _DOMAINS[found.kind](inside.real)):
+            raise Outside
         return getattr(inside, found.kind)()  # type: ignore[no-any-return]  # the kernel calls them so, too
+
+
+#: Where an inverse function is real.
+_DOMAINS = {"log": lambda x: x > 0, "asin": lambda x: abs(x) < 1, "acos": lambda x: abs(x) < 1}
 
 
 def _ball(number: Fraction) -> acb:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from symobs.system.motion import Motion
 
 ZERO = Scalar.of(0)
+#: As many generalised momenta have letters, with which Lagrange's equations are held to the energies.
+MOST_MOMENTA = 9
 
 
 def state_motion(page: Builder, motion: Motion) -> None:
@@ -33,7 +35,8 @@ def state_motion(page: Builder, motion: Motion) -> None:
         _tell_energies(page, motion)
         law = relation(page.value(M) @ page.value(w), -rest) if several else relation(M[0, 0] * w[0, 0], -rest[0, 0])
         page.equal(law, say="lagrange")
-        page.conclude_silently(*_lagrange(page, motion))
+        if len(motion.coordinates) <= MOST_MOMENTA:
+            page.conclude_silently(*_lagrange(page, motion))
     else:
         sides = (relation(left, right) for left, right in motion.sides)
         page.equal(*sides, say="equations_of_motion", coordinates=SymbolList(motion.coordinates))
@@ -71,8 +74,10 @@ def _tell_energies(page: Builder, motion: Motion) -> None:
 def _lagrange(page: Builder, motion: Motion) -> list[Relation]:
     """Return that each equation is d/dt ∂T/∂q′ − ∂T/∂q + ∂V/∂q − Q, with d/dt by the chain rule."""
     found = []
-    for q, equation, force in zip(motion.coordinates, motion.equations, motion.forces, strict=True):
-        momentum = Derivative(Letter("T_q"), rate_of(q))
+    for number, (q, equation, force) in enumerate(
+        zip(motion.coordinates, motion.equations, motion.forces, strict=True), 1
+    ):
+        momentum = page.set(f"p_q{number}", derivative(motion.kinetic or ZERO, rate_of(q))).formula
         parts: list[Formula] = [
             Product((Derivative(momentum, rate_of(p, times)), Literal(Scalar.symbol(rate_of(p, times + 1)))))
             for p in motion.coordinates

@@ -82,6 +82,10 @@ def is_for(asked: str, plant: StateSpace, poles: Sequence[str]) -> bool:
         return plant.order == 2 and (asked.partition("/")[0] not in MORE or plant.outputs == 1)
     if asked.partition("/")[0] == "margins":
         return plant.inputs == 1
+    if asked.partition("/")[0] == "root_locus":  # there is a loop, and k is its gain
+        m = plant.matrices
+        moves = any(not (m.C @ m.A**power @ m.B).is_zero for power in range(plant.order))
+        return plant.inputs == plant.outputs == 1 and moves and "k" not in plant.field.names
     if asked.partition("/")[0] in MORE:
         return plant.outputs == 1
     if not {asked, asked.partition("/")[0]} & FEWER.keys():

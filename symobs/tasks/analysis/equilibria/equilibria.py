@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Ideal, Matrix, Scalar, modulo
 from symobs.exact.core.generators import NotWritten, all_roots, identities, normal_form
 from symobs.formula.tree import At, Environment, SymbolList
 from symobs.ground.dataclass import dataclass
@@ -52,14 +52,17 @@ class Equilibria(Result):
         """Yield f = 0 (x in discrete time) at each point, and the matrix of the linearisation there."""
         for number, point in enumerate(self.found.points, 1):
             values = Matrix.column(self._rest(point))
-            yield Claim(relation(values, values * 0), self._environment(values), f"f = 0 at {_text(point)}")
+            yield Claim(relation(values, values * 0), self._environment(point, values), f"f = 0 at {_text(point)}")
             if (A := self.matrix_at(point)) is not None:
                 raw = self.jacobian.substitute(self._values(point))
-                yield Claim(relation(raw, A), self._environment(raw, A), f"the linearisation at equilibrium {number}")
+                yield Claim(
+                    relation(raw, A), self._environment(point, raw, A), f"the linearisation at equilibrium {number}"
+                )
 
-    def _environment(self, *values: Matrix) -> Environment:
-        """Return an environment in which functions have their identities, and roots of squares their signs."""
+    def _environment(self, point: Equilibrium, *values: Matrix) -> Environment:
+        """Return an environment in which functions have their identities, roots their signs, and the point is one."""
         relations = (*identities(values)[1], *(zero for value in values for zero in self._roots_by_signs(value)))
+        relations += tuple(_zeros(point))
         return Environment(variable=self.plant.variable, relations=relations, signs=self._signs)
 
     def _roots_by_signs(self, value: Matrix) -> list[Scalar]:
@@ -133,7 +136,8 @@ class Equilibria(Result):
             rows = [[simplified(normal_form(by_signs(entry, self._signs))) for entry in row] for row in value.rows]
         except (ZeroDivisionError, NotWritten):
             return None
-        return Matrix.of(rows)
+        zeros = _zeros(point)
+        return modulo(Matrix.of(rows), Ideal.of(zeros)) if zeros else Matrix.of(rows)
 
     def stability_at(self, point: Equilibrium) -> tuple[str, list[str]]:
         """Return whether the linearisation at a point is asymptotically stable, and where that needs conditions."""
@@ -191,6 +195,8 @@ class Equilibria(Result):
             page.remark(f"rests_where_{_WHERE[condition.operator]}", value=condition.expression)
         if point.free:
             page.remark("free_at_rest", names=SymbolList(point.free))
+        if _zeros(point):  # what is 0 there is not 0 elsewhere on the page
+            return
         there: Any = page["f_x"].formula
         for name in (*given.states, *given.inputs):
             there = At(there, name, values[name])
@@ -223,6 +229,11 @@ class Equilibria(Result):
 #: As many linearisations have a letter of their own.
 MOST_LETTERS = 9
 _WHERE = {">": "positive", ">=": "nonnegative", "!=": "nonzero", "==": "zero"}
+
+
+def _zeros(point: Equilibrium) -> list[Scalar]:
+    """Return what must vanish for a point to be an equilibrium."""
+    return [condition.expression for condition in point.conditions if condition.operator == "=="]
 
 
 def _text(point: Equilibrium) -> str:

@@ -17,8 +17,6 @@ from symobs.proof.derivation.builder import predicate, relation
 from symobs.system import StateSpace
 from symobs.system.conditions import joined, nonzero, vanishing_factors
 from symobs.tasks.analysis.page_parts import factored_form, given
-from symobs.tasks.analysis.stability_region.stability_region import stability_region
-from symobs.tasks.analysis.stability_region.stability_region_page import write_line
 from symobs.tasks.result import Result, holds
 
 if TYPE_CHECKING:
@@ -107,6 +105,8 @@ class SampledPlant(_Sampled, Result):
         names = sorted(self.shifted.names - {self.plant.variable})
         period = [name for name in names if name in self.period.names] or names
         signs = {**self.plant.symbols.signs, **dict.fromkeys(self.period.names, "positive")}
+        from symobs.tasks.analysis.stability_region.stability_region import stability_region  # noqa: PLC0415 - rules alone
+
         found: Any = stability_region(self.shifted, symbols=signs, parameters=period)
         return found  # type: ignore[no-any-return]
 
@@ -171,6 +171,8 @@ class SampledPlant(_Sampled, Result):
         product = place**self.plant.order * (page.value(1) / place).apply("chi_at")
         page.define("q_s", product, self.shifted, say="sampling_forward_stability", closing=False)
         if self.shifted.names > {page.plant.variable}:
+            from symobs.tasks.analysis.stability_region.stability_region_page import write_line  # noqa: PLC0415
+
             write_line(page, self.region, "q_s", with_pictures=False)
         elif self.region.verdict == "yes":
             page.conclude("sampling_stable", predicate("stable", page["q_s"]))

@@ -193,7 +193,7 @@ def root_locus(
 ) -> Result:
     """Return the root locus of 1 + k C(s)G(s): the roots of p + k q for k from 0, with landmarks that are exact.
 
-    plant       one input and one output; with symbols what stays exact
+    plant       n states, one input and one output; with symbols what stays exact
     controller  C(s), a rational function, 1 where it is left out
     gain_sign   1, or −1 for 1 − k C(s)G(s), k > 0 all the same
     Returns poles (k = 0) and zeros; asymptotes (centroid, angles in degrees); breakaway: s, k of multiple roots, one of a
@@ -203,6 +203,11 @@ def root_locus(
     Source: K. Ogata, Modern Control Engineering, 5th ed., ch. 6.
     """
     plant.require("B", "C", task="root_locus")
+    if (plant.inputs, plant.outputs) != (1, 1):
+        message = f"a root locus has one gain, and the plant has {plant.inputs} inputs and {plant.outputs} outputs"
+        raise InputError(
+            message, where="plant", repair="give a plant with one of each, such as one input and one output of it"
+        )
     if controller is not None:
         plant = plant.knowing(controller)
     if gain_sign not in (1, -1):
