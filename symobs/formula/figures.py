@@ -136,8 +136,38 @@ class TimeResponse:
         return [(begin + k * step, Fraction(height, self.parts)) for k, height in enumerate(response.heights)]
 
 
+@dataclass
+class NyquistPicture:
+    """The values of a loop along half of the boundary of stability, poles on it passed on the unstable side.
+
+    `contour` are the places on the boundary, from 0 or 1 on upwards; the other half has the conjugate values.
+    """
+
+    contour: tuple[Place, ...]
+    values: tuple[Place, ...]
+    window: tuple[Interval, Interval]
+    discrete: bool = False
+    indented: bool = False
+
+
+@dataclass
+class BodePicture:
+    """The modulus of a loop in decibels and its phase in degrees at places of the boundary of stability.
+
+    `across` are the decimal logarithms of the frequency there, in discrete time of the angle.  The window is that of the
+    logarithms and of the decibels; phases fill theirs.
+    """
+
+    contour: tuple[Place, ...]
+    across: tuple[Fraction, ...]
+    levels: tuple[Fraction, ...]
+    phases: tuple[Fraction, ...]
+    window: tuple[Interval, Interval]
+    discrete: bool = False
+
+
 #: What stands on a page, and is checked with it.
-Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse
+Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse | NyquistPicture | BodePicture
 #: A line through values that were rounded to binary numbers; values of a sweep are exact, what joins them is not.
 Run: TypeAlias = "tuple[tuple[float, float], ...]"
 

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
 
 import symobs
+from symobs.exact import Scalar
+from symobs.formula.figures import BodePicture, NyquistPicture
+from symobs.proof.derivation import Plot, Section
+from symobs.proof.derivation.plot_check import faults_of_frequency
 
 
 @pytest.mark.parametrize("seed", range(16))
@@ -50,3 +56,67 @@ def test_a_loop_with_an_integrator_is_known() -> None:
     found: Any = symobs.margins(plant, controller="1").fields
     assert [(str(c["omega"]), str(c["value"])) for c in found["axis_crossings"]] == [("sqrt(2)", "-5/3")]
     assert (found["open_loop_unstable"], found["closed_loop_unstable"], found["encirclements"]) == (0, 2, -2)
+
+
+@pytest.mark.parametrize(
+    ("controller", "said"),
+    [
+        # Ogata, Modern Control Engineering, 5th ed., Example 6-1: stable for k < 6, crossing at sqrt(2)
+        ("2", "0 without feedback and 0 with it|meets the real axis at -0.333333 for the frequency 1.414214"),
+        ("12", "0 without feedback and 2 with it|counterclockwise −2 times|meets the real axis at -2 for"),
+        ("6", "others lie on the boundary of stability|meets the real axis at -1 for"),
+    ],
+)
+def test_the_page_tells_the_numbers_of_the_criterion(controller: str, said: str) -> None:
+    plant = symobs.StateSpace.from_transfer_function("1/(s*(s+1)*(s+2))")
+    page = " ".join(str(symobs.margins(plant, controller=controller).to("text")).split())
+    for words in said.split("|"):
+        assert words in page
+
+
+@pytest.mark.parametrize(
+    ("loop", "dt"),
+    [
+        ("2/(s*(s+1)*(s+2))", 0),
+        ("12/(s*(s+1)*(s+2))", 0),
+        ("1/(s^2*(s+1))", 0),
+        ("10*(s+1)/(s*(s^2+4))", 0),
+        ("2*(s+3)/(s*(s-1))", 0),
+        ("1/s^3", 0),
+        ("(z+1)/((z-1)*(z-1/2))", 1),
+        ("1/((z+1)*(z-1/2))", 1),
+        ("1/(z^2+1)", 1),
+    ],
+)
+def test_the_drawn_curve_turns_around_minus_one_as_often_as_is_told(loop: str, dt: int) -> None:
+    found: Any = symobs.margins(symobs.StateSpace.from_transfer_function(loop, dt=dt), controller="1")
+    drawn = [step.picture for step in plots(found) if isinstance(step.picture, NyquistPicture)]
+    values = np.array([complex(x, y) for x, y in drawn[0].values])
+    turned = np.angle((values[1:] + 1) / (values[:-1] + 1))
+    assert np.abs(turned).max() < math.pi / 2
+    assert round(2 * turned.sum() / (2 * math.pi), 1) == found.fields["encirclements"]
+    assert str(found.to("html")).count("<svg") >= 2
+
+
+def plots(result: Any) -> list[Plot]:
+    """Return the plots of a page."""
+    sections = [step for step in result.derivation.steps if isinstance(step, Section)]
+    return [step for section in sections for step in section.steps if isinstance(step, Plot)]
+
+
+def test_a_wrong_frequency_response_is_seen() -> None:
+    found: Any = symobs.margins(symobs.StateSpace.from_transfer_function("1/(s*(s+1))"), controller="1")
+    loop = Scalar.of(1) / (Scalar.symbol("s") * (Scalar.symbol("s") + 1))
+    bode, nyquist = (step.picture for step in plots(found)[:2])
+    for picture in (bode, nyquist):
+        assert not [*faults_of_frequency(picture, loop, "s", discrete=False)]  # type: ignore[arg-type]
+        assert [*faults_of_frequency(picture, 2 * loop, "s", discrete=False)]  # type: ignore[arg-type]
+        assert [*faults_of_frequency(picture, loop, "s", discrete=True)]  # type: ignore[arg-type]
+    assert isinstance(bode, BodePicture)
+    assert isinstance(nyquist, NyquistPicture)
+    turned = replace(bode, phases=tuple(angle - 180 for angle in bode.phases))
+    moved = replace(bode, across=tuple(x + 1 for x in bode.across))
+    left = replace(nyquist, contour=tuple((-x, y) for x, y in nyquist.contour))
+    narrow = replace(nyquist, window=((Fraction(0), Fraction(1)), nyquist.window[1]))
+    for picture in (turned, moved, left, narrow):
+        assert [*faults_of_frequency(picture, loop, "s", discrete=False)]

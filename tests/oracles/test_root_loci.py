@@ -92,3 +92,27 @@ def test_multiple_roots_and_crossings_have_50_digits(seed: int) -> None:
     for k0, k1, a, b in zip(grid, grid[1:], counts, counts[1:], strict=False):
         if a != b:
             assert any(k0 * 0.99 <= end <= k1 * 1.01 for end in ends), (k0, ends)
+
+
+def test_with_letters_the_centroid_and_the_crossing_gain_stay_exact() -> None:
+    """Hold s (s + a)(s + b): by Routh the crossing is at k = a b (a + b), omega^2 = a b."""
+    signs = {"a": "positive", "b": "positive"}
+    plant = symobs.StateSpace.from_transfer_function("1/(s*(s+a)*(s+b))", symbols=signs)
+    found: Any = symobs.root_locus(plant).fields
+    (crossing,) = found["crossings"]
+    assert str(crossing["k"]) == "a**2*b + a*b**2"
+    assert crossing["omega"] == "sqrt(a*b)"
+    assert str(found["asymptotes"]["centroid"]) == "-a/3 - b/3"
+
+
+def test_an_open_sign_of_the_lead_leaves_the_angles_open() -> None:
+    plant = symobs.StateSpace.from_transfer_function("b/(s*(s+1))", symbols={"b": "real"})
+    found: Any = symobs.root_locus(plant)
+    assert found.fields["asymptotes"]["angles"] is None
+    assert "Rule 3" not in str(found.to("text"))
+
+
+def test_a_branch_departs_to_the_left_between_poles_of_one_height() -> None:
+    """Hold s^4 = -1 - k: the roots leave along the rays that they lie on."""
+    found: Any = symobs.root_locus(symobs.StateSpace.from_transfer_function("1/(s^4+1)")).fields
+    assert sorted(float(each["angle"]) for each in found["departure"]) == [45, 135]

@@ -9,6 +9,9 @@ a random instant.
 
 from __future__ import annotations
 
+import cmath
+import itertools
+import math
 import random
 from collections import deque
 from dataclasses import dataclass, field, replace
@@ -23,7 +26,7 @@ import sympy
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
 from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import PI, function_named, symbols_in
-from symobs.formula.figures import TimeResponse, figure_of, is_box, is_integrator, key
+from symobs.formula.figures import BodePicture, NyquistPicture, TimeResponse, figure_of, is_box, is_integrator, key
 from symobs.formula.phrases.languages import Counted, StateChoice
 from symobs.formula.tree import (
     Apply,
@@ -315,6 +318,9 @@ class World:
                     yield from self.survey(step)
                 case Plot(TimeResponse() as responses, subject):
                     yield "=", Fraction(len(untrue_responses(responses, self.value(subject))))
+                case Plot(NyquistPicture() | BodePicture() as response, subject):
+                    assert isinstance(subject, Quotient)
+                    yield "=", Fraction(len(list(self.untrue_frequencies(response))))
                 case Plot(picture, subject):
                     yield "property stable", single(self.value(subject))
                     yield "=", Fraction(len(list(self.seen(picture, subject))))
@@ -394,6 +400,46 @@ class World:
             yield "=", Fraction(wrong)
         yield "=", Fraction(sum(not regions.is_so(finding, stable, samples, step.names) for finding in step.findings))
         yield "words", (step.names, [repr(finding) for finding in step.findings])
+
+    def untrue_frequencies(self, picture: NyquistPicture | BodePicture) -> Iterator[str]:
+        """Yield the places where (χ_cl − χ_o)/χ_o, found in floating point, is not what a picture has there."""
+        closed, opened = (self.scalar_of(Letter(name)) for name in ("chi_cl", "chi_o"))
+        assert closed is not None
+        assert opened is not None
+        lists = [[float(c.fraction()) for c in p.coefficients(self.variable)] for p in (closed, opened)]
+        (left, right), (bottom, top) = picture.window
+        places = [complex(float(x), float(y)) for x, y in picture.contour]
+        far = [abs(s) - 1 if self.is_discrete else s.real for s in places]
+        turned = [cmath.phase(s) % (2 * cmath.pi) if self.is_discrete else s.imag for s in places]
+        if picture.discrete != self.is_discrete or min(far) < -1e-9 or turned != sorted(turned):
+            yield "contour"
+            return
+        near = float(min(right - left, top - bottom)) / 200
+        for k, s in enumerate(places):
+            value = (
+                reduce(lambda sum_, c: sum_ * s + c, lists[0], 0j) / reduce(lambda sum_, c: sum_ * s + c, lists[1], 0j)
+                - 1
+            )
+            if isinstance(picture, NyquistPicture):
+                u, v = picture.values[k]
+                missed = abs(value - complex(float(u), float(v)))
+                if missed > max(near, abs(value) * 1e-6) or (far[k] > 1e-9 and abs(value) < 1):
+                    yield f"values[{k}]"
+                continue
+            omega = turned[k]
+            off = abs(float(picture.phases[k]) - math.degrees(cmath.phase(value))) % 360
+            told = (
+                abs(math.log10(omega) - float(picture.across[k])),
+                abs(20 * math.log10(abs(value)) - float(picture.levels[k])),
+            )
+            if max(*told, min(off, 360 - off) / 10) > near or far[k] > 1e-9:
+                yield f"levels[{k}]"
+        if isinstance(picture, BodePicture):
+            jumps = [abs(b - a) for a, b in itertools.pairwise(picture.phases)]
+            if list(picture.across) != sorted(picture.across) or max(jumps) > 200:
+                yield "jumps"
+        elif not (left <= -1 <= right and bottom <= 0 <= top):
+            yield "window"
 
     def seen(self, picture: Picture, subject: Formula) -> Iterator[str]:
         """Yield what a picture shows that is not so."""

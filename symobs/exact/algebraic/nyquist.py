@@ -18,6 +18,7 @@ from symobs.exact.algebraic.root_loci import (
     coprime,
     frequency,
     gain_on_boundary,
+    omega_digits,
     omega_of,
     on_boundary,
     whole,
@@ -64,6 +65,31 @@ def nyquist(closed: Scalar, opened: Scalar, variable: str) -> dict[str, Any]:
     found["gain_crossover"] = [omega_of(x, discrete=discrete) for x in crossed]
     found["delay_margin"] = _delay(crossed, N, P, variable)
     return found
+
+
+def told_of(kind: str, closed: Scalar, opened: Scalar, variable: str) -> list[dict[str, str]]:
+    """Return what a sentence tells of the counts, of each crossing of the axis or the circle, or of the delay margin."""
+    found, discrete = nyquist(closed, opened, variable), variable == "z"
+    if kind == "counts":
+        names = {"before": "open_loop_unstable", "after": "closed_loop_unstable", "around": "encirclements"}
+        return [
+            {name: str(found[field]).replace("-", "−") for name, field in names.items() if found[field] is not None}
+        ]
+    if kind == "delay":
+        delay = found["delay_margin"]
+        return [] if delay is None else [{} if delay == INFINITE else {"delay": delay}]
+    P, N = coprime(opened, closed - opened)
+    im, re, below = on_boundary(N, P, variable)
+    if kind == "level":
+        level = on_boundary(N, N, variable)[2] - below
+        crossed = _on_range(level, discrete=discrete, ends=False) if not level.is_zero else []
+        return [{"omega": omega_digits(x, discrete=discrete)} for x in crossed]
+    real = [(x, gain_on_boundary(x, -re, below)) for x in _on_range(im, discrete=discrete, ends=True)]
+    return [
+        {"omega": omega_digits(x, discrete=discrete), "value": value.decimal(LOCUS_DIGITS)}
+        for x, value in real
+        if value is not None
+    ]
 
 
 def _text(value: RealNumber) -> Any:

@@ -323,13 +323,33 @@ def _angle(root: Root, roots: Sequence[Root], others: Sequence[Root], *, start: 
         here = _places(root, bits)
         angle = arb(180 * start)
         for each in others:
-            angle += (here - _places(each, bits)).arg() * 180 / arb.pi()
+            angle += _argument(here - _places(each, bits)) * 180 / arb.pi()
         for each in roots:
             if each != root:
-                angle -= (here - _places(each, bits)).arg() * 180 / arb.pi()
+                angle -= _argument(here - _places(each, bits)) * 180 / arb.pi()
         angle /= order
         turns = round(float(angle.mid()) / 360)
         angle -= 360 * turns
         return angle + 360 if float(angle.mid()) < -179.99999999 else angle
 
     return certain(total, LOCUS_DIGITS) or ""
+
+
+def _argument(value: acb) -> arb:
+    """Return the argument, from −π/2 to 3π/2: two roots with one imaginary part have it between balls of either sign."""
+    found: arb = (-value).arg() + arb.pi() if value.real < 0 else value.arg()
+    return found
+
+
+def crossings_with_letters(p: Scalar, q: Scalar) -> list[tuple[Scalar, Scalar]]:
+    """Return k and ω² of roots on the imaginary axis where ω² is rational in the letters."""
+    im, re, square = on_boundary(p, q, "s")
+    found = []
+    for factor, _ in im.numerator.factors()[1]:
+        if "x" in factor.names and factor.degree("x") == 1:
+            lead, rest = factor.coefficients("x")
+            x = -rest / lead
+            below = square.substitute({"x": x})
+            if not below.is_zero:
+                found.append((-re.substitute({"x": x}) / below, x))
+    return found

@@ -8,7 +8,16 @@ from math import ceil, cos, dist, floor, hypot, log10, pi, sin
 from typing import TYPE_CHECKING, assert_never
 
 from symobs.exact import Scalar
-from symobs.formula.figures import LinePicture, PoleMap, RegionPicture, SweepCurves, SweepMap, TimeResponse
+from symobs.formula.figures import (
+    BodePicture,
+    LinePicture,
+    NyquistPicture,
+    PoleMap,
+    RegionPicture,
+    SweepCurves,
+    SweepMap,
+    TimeResponse,
+)
 from symobs.formula.tree import Decimals, Literal, Relation
 from symobs.pages.drawings.curve_labels import Frame, Surroundings, chained, labelled, segment_in, walk
 from symobs.pages.drawings.scene import RADIUS, Rectangle, Scene, Sign, Stroke, TextLabel, whole_of
@@ -65,6 +74,10 @@ def _scene(picture: Drawn, measure: Measure) -> Scene:
             return _poles(picture, measure)
         case TimeResponse():
             return _responses(picture, measure)
+        case NyquistPicture():
+            return _nyquist(picture, measure)
+        case BodePicture():
+            return _bode(picture, measure)
         case SweepCurves():
             return _curves(picture, measure)
         case SweepMap():
@@ -131,13 +144,15 @@ def _box(sign: Sign) -> Rectangle:
 # -- axes -------------------------------------------------------------------------------------------------------------
 
 
-def _axes(frame: Frame, names: tuple[Content, ...], measure: Measure) -> tuple[list[Stroke], list[TextLabel]]:
-    """Return axes on the left and below, with ticks and names."""
+def _axes(
+    frame: Frame, names: tuple[Content, ...], measure: Measure, *, decades: bool = False
+) -> tuple[list[Stroke], list[TextLabel]]:
+    """Return axes on the left and below, with ticks and names; over `decades` the logarithms below are told as numbers."""
     width, height = frame.width, frame.height
     strokes = [Stroke(((0, 0), (width + _BEYOND, 0)), "axis"), Stroke(((0, 0), (0, height + _BEYOND)), "axis")]
     texts = [TextLabel(names[0], (width + _BEYOND + _LETTER, 0), "west")]
     texts += [TextLabel(name, (0, height + _BEYOND + _LETTER - 1), "south") for name in names[1:]]
-    for value, label in ticks(*frame.horizontal):
+    for value, label in decade_ticks(*frame.horizontal) if decades else ticks(*frame.horizontal):
         x, _ = frame.at(value, 0)
         strokes.append(Stroke(((x, 0), (x, -_TICK)), "tick"))
         texts.append(TextLabel(label, (x, -_TICK - 3), "north"))
@@ -146,6 +161,13 @@ def _axes(frame: Frame, names: tuple[Content, ...], measure: Measure) -> tuple[l
         strokes.append(Stroke(((0, y), (-_TICK, y)), "tick"))
         texts.append(TextLabel(label, (-_TICK - 2, y), "east"))
     return strokes, texts
+
+
+def decade_ticks(low: float, high: float) -> list[tuple[float, str]]:
+    """Return whole logarithms of an interval, every second or third of many, with their numbers; of few halves, too."""
+    first, last = ceil(low - 1e-9), floor(high + 1e-9)
+    step = 1 + (last - first) // 8
+    return [(float(n), f"{10.0**n:g}" if -5 < n < 6 else f"1e{n}") for n in range(first, last + 1, step)]
 
 
 def _fitting(height: float, measure: Measure) -> int:
@@ -256,6 +278,38 @@ def _poles(picture: PoleMap, measure: Measure) -> Scene:
     return Scene(frame.box, whole, tuple(frame.areas(stable)), tuple(strokes), (), tuple(signs), tuple(texts))
 
 
+# -- frequency responses ------------------------------------------------------------------------------------------------
+
+
+def _nyquist(picture: NyquistPicture, measure: Measure) -> Scene:
+    """Return the plane with the frequency response, its mirror image dashed, and −1."""
+    frame = _square_frame(picture.window)
+    axes, texts = _axes(frame, (symbol("Re"), symbol("Im")), measure)
+    strokes = [*(Stroke(line, "zero") for line in _zero_lines(frame)), *axes]
+    signs = [Sign("cross", frame.at(-1.0, 0.0))]
+    for style, sign in (("path", 1), ("path 2", -1)):
+        places = [(x, sign * y) for x, y in picture.values]
+        for run in frame.lines(places if sign > 0 else reversed(places)):
+            strokes.append(Stroke(run, style))
+            signs += _arrows(run)
+    return Scene(frame.box, whole_of(strokes, texts, measure), (), tuple(strokes), (), tuple(signs), tuple(texts))
+
+
+def _bode(picture: BodePicture, measure: Measure) -> Scene:
+    """Return modulus and phase one below the other over the logarithm of the frequency."""
+
+    def drawn_in(heights: Sequence[Fraction]) -> Callable[[Frame], list[tuple[Point, ...]]]:
+        return lambda frame: frame.lines(zip(picture.across, heights, strict=True))
+
+    phases = _decimal((min(picture.phases), max(picture.phases)))
+    panels: list[_Panel] = [
+        ("dB", _decimal(picture.window[1]), drawn_in(picture.levels)),
+        ("deg", (min(phases[0], -180.0), max(phases[1], phases[0] + 1)), drawn_in(picture.phases)),
+    ]
+    axis = "theta" if picture.discrete else "omega"
+    return _stacked(_decimal(picture.window[0]), axis, panels, measure, decades=True)
+
+
 # -- responses ----------------------------------------------------------------------------------------------------------
 
 
@@ -316,15 +370,17 @@ def _panels(picture: TimeResponse, measure: Measure) -> Scene:
     return _stacked(_decimal(picture.window[0]), time_axis(picture), panels, measure)
 
 
-def _stacked(window: tuple[float, float], axis: str, panels: Sequence[_Panel], measure: Measure) -> Scene:
-    """Return panels one below the other over one horizontal axis."""
+def _stacked(
+    window: tuple[float, float], axis: str, panels: Sequence[_Panel], measure: Measure, *, decades: bool = False
+) -> Scene:
+    """Return panels one below the other over one horizontal axis, of logarithms with `decades`."""
     strokes: list[Stroke] = []
     texts: list[TextLabel] = []
     for row, (name, (low, high), lines) in enumerate(reversed(panels)):
         up = row * (_PANEL + _BETWEEN_PANELS)
         room = (high - low) / 20
         frame = Frame(window, (low - room, high + room), WIDEST, _PANEL)
-        axes, written = _axes(frame, (symbol(axis), name), measure)
+        axes, written = _axes(frame, (symbol(axis), name), measure, decades=decades)
         runs = [Stroke(line, "zero") for line in _zero_lines(frame)] + axes
         runs += [Stroke(line, "path") for line in lines(frame)]
         strokes += [replace(run, points=tuple((x, y + up) for x, y in run.points)) for run in runs]

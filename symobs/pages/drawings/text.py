@@ -7,11 +7,11 @@ from itertools import pairwise
 from math import floor, inf
 from typing import TYPE_CHECKING, assert_never
 
-from symobs.formula.figures import LinePicture, PoleMap, RegionPicture, TimeResponse
+from symobs.formula.figures import BodePicture, LinePicture, NyquistPicture, PoleMap, RegionPicture, TimeResponse
 from symobs.formula.tree import Conjunction, Formula, Literal
 from symobs.pages.drawings.curve_labels import contains
 from symobs.pages.drawings.diagram_layout import Metrics, diagram_scene
-from symobs.pages.drawings.plot_layout import ticks
+from symobs.pages.drawings.plot_layout import decade_ticks, ticks
 from symobs.pages.drawings.scene import STYLES
 from symobs.pages.page.blocks import Drawing
 from symobs.pages.page.plot_captions import name_of, part, radius_of, symbol, time_axis
@@ -55,6 +55,10 @@ def sketch(item: Drawing | Picture, printer: TextPrinter, width: int) -> str:
             return _poles(item, printer)
         case TimeResponse():
             return _responses(item, printer)
+        case NyquistPicture():
+            return _nyquist(item, printer)
+        case BodePicture():
+            return _bode(item, printer)
         case _:
             assert_never(item)
 
@@ -114,6 +118,31 @@ def _poles(picture: PoleMap, printer: TextPrinter) -> str:
     return _framed(grid, picture.window, [part("Re"), part("Im")], printer)
 
 
+def _nyquist(picture: NyquistPicture, printer: TextPrinter) -> str:
+    """Return the grid of a frequency response: `*` for positive, `.` for negative frequencies, `x` for −1."""
+    grid = _grid(picture.window, lambda _x, _y: " ")
+    for (x, y), (u, v) in pairwise(picture.values):
+        for k in range(9):
+            place = x + (u - x) * k / 8, y + (v - y) * k / 8
+            _put(grid, picture.window, (place[0], -place[1]), ".")
+            _put(grid, picture.window, place, "*")
+    _put(grid, picture.window, (Fraction(-1), Fraction(0)), "x")
+    return _framed(grid, picture.window, [symbol("Re"), symbol("Im")], printer)
+
+
+def _bode(picture: BodePicture, printer: TextPrinter) -> str:
+    """Return the grids of modulus and phase over the logarithm of the frequency."""
+    drawn, across = [], picture.window[0]
+    phases = min(picture.phases), max(*picture.phases, min(picture.phases) + 1)
+    for name, heights, ends in (("dB", picture.levels, picture.window[1]), ("deg", picture.phases, phases)):
+        grid = _grid((across, ends), lambda _x, _y: " ")
+        for place in zip(picture.across, heights, strict=True):
+            _put(grid, (across, ends), place, "*")
+        axis = "theta" if picture.discrete else "omega"
+        drawn.append(f"{name}\n{_framed(grid, (across, ends), [symbol(axis)], printer, decades=True)}")
+    return "\n\n".join(drawn)
+
+
 def _responses(picture: TimeResponse, printer: TextPrinter) -> str:
     """Return the grid of responses, a character for each with a legend above."""
     grid = _grid(picture.window, lambda _x, _y: " ")
@@ -150,16 +179,22 @@ def _row(upwards: Interval, place: Fraction) -> int:
 
 
 def _framed(
-    grid: list[list[str]], window: tuple[Interval, Interval], names: Sequence[Formula], printer: TextPrinter
+    grid: list[list[str]],
+    window: tuple[Interval, Interval],
+    names: Sequence[Formula],
+    printer: TextPrinter,
+    *,
+    decades: bool = False,
 ) -> str:
-    """Return the rows with axes, their names and round numbers."""
+    """Return the rows with axes, their names and round numbers, those below of logarithms with `decades`."""
+    marked = (decade_ticks if decades else ticks, ticks)
     first, second = ([printer.inline(name) for name in names] + [""])[:2]
     below, beside = (
         {
             find(ends, Fraction(value)): printer.language.decimal(text)
-            for value, text in ticks(float(ends[0]), float(ends[1]))
+            for value, text in numbers_of(float(ends[0]), float(ends[1]))
         }
-        for find, ends in zip((_column, _row), window, strict=True)
+        for find, ends, numbers_of in zip((_column, _row), window, marked, strict=True)
     )
     margin = max(map(len, beside.values()))
     lines = [f"{' ' * margin} {second}"] if second else []

@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
 from symobs.formula.convention import STANDARD
-from symobs.formula.figures import LinePicture, PoleMap, RegionPicture, SweepCurves, SweepMap, TimeResponse
+from symobs.formula.figures import (
+    BodePicture,
+    LinePicture,
+    NyquistPicture,
+    PoleMap,
+    RegionPicture,
+    SweepCurves,
+    SweepMap,
+    TimeResponse,
+)
 from symobs.formula.phrases.languages import ENGLISH
 from symobs.formula.tree import Apply, At, Conjunction, Letter, Literal, Relation
 from symobs.pages.page.prose import filled, joined
@@ -103,6 +112,12 @@ def _sentences(picture: Drawn) -> Iterator[Sentence]:
             yield caption_sentence("response", start=Conjunction(begun))
             if picture.discrete:
                 yield caption_sentence("samples_only")
+        case NyquistPicture(indented=indented):
+            yield caption_sentence("nyquist")
+            if indented:
+                yield caption_sentence("indented")
+        case BodePicture(discrete=discrete):
+            yield caption_sentence("bode_discrete" if discrete else "bode")
         case SweepCurves(points=count, columns=columns, infinite=infinite):
             yield caption_sentence("sweep", count=number(count))
             for column in infinite:

@@ -5,10 +5,11 @@ The points of a picture are rational and lie near what they stand for; how near 
 
 from __future__ import annotations
 
+from cmath import phase
 from fractions import Fraction
 from functools import lru_cache
 from itertools import chain, dropwhile, islice, pairwise
-from math import comb, lcm
+from math import comb, degrees, lcm, log10, tau
 from operator import mul
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,7 +17,7 @@ from symobs.exact import Matrix, Scalar, product_of
 from symobs.exact.algebraic.enclosure import sign_of_number
 from symobs.exact.algebraic.root_location import shifted, value_at
 from symobs.exact.core.matrix import whole_product
-from symobs.formula.figures import LinePicture, PoleMap, RegionPicture, TimeResponse
+from symobs.formula.figures import BodePicture, LinePicture, NyquistPicture, PoleMap, RegionPicture, TimeResponse
 from symobs.formula.tree import Block, Derivative, Exact, Letter, Literal, Product, Relation, Signal, evaluate
 from symobs.proof.certificate.claims import as_scalar, verify
 from symobs.proof.derivation.facts import polynomial_of
@@ -152,6 +153,10 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
         else:
             yield "another time"
         return
+    if isinstance(picture, (NyquistPicture, BodePicture)):
+        loop = as_scalar(evaluate(subject, environment, Exact(environment)))
+        yield from faults_of_frequency(picture, loop, environment.variable, discrete=discrete)
+        return
     numbers = dict(picture.drawn_for)
     for name, value in numbers.items():
         if not value.is_constant or not ALLOWS[environment.signs.get(name, "real")](value.fraction()):
@@ -173,6 +178,45 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
             yield from _of_line(picture, test)
         case _:
             yield from faults_of_poles(picture, polynomial, variable, discrete=discrete)
+
+
+# Check of frequency responses: the value of the loop at each place, found exactly; places on the boundary, or outside.
+
+
+def faults_of_frequency(
+    picture: NyquistPicture | BodePicture, loop: Scalar, variable: str, *, discrete: bool
+) -> Iterator[str]:
+    """Yield the faults of a Nyquist or a Bode picture."""
+    above, below = ([c.fraction() for c in p.coefficients(variable)] for p in (loop.numerator, loop.denominator))
+    sizes = [_square(place) - 1 if discrete else place[0] for place in picture.contour]
+    is_bode, (across, upwards) = isinstance(picture, BodePicture), picture.window
+    least = min(across[1] - across[0], upwards[1] - upwards[0])
+    slack = Fraction(1, 1 << 40)
+    along = [phase(complex(*map(float, s))) % tau if discrete else s[1] for s in picture.contour]
+    near, pairs = least * _NEAR_POLE, [(shifted(above, s)[0], shifted(below, s)[0]) for s in picture.contour]
+    beside = [_square(n) > _square(p) for size, (n, p) in zip(sizes, pairs, strict=True) if size > slack]  # near a pole
+    is_along = along == sorted(along) and min(sizes) >= -slack and all(beside)
+    if picture.discrete != discrete or least <= 0 or not is_along or (is_bode and beside):
+        yield "places on the boundary of stability, in a window"
+        return
+    if isinstance(picture, BodePicture):
+        lists = zip(picture.contour, picture.across, picture.levels, picture.phases, pairs, strict=True)
+        for place, x, level, angle, (n, p) in lists:
+            value, at = complex(*map(float, n)) / complex(*map(float, p)), complex(*map(float, place))
+            off = abs(float(angle) - degrees(phase(value))) % 360
+            told = log10(phase(at) if discrete else at.imag), 20 * log10(abs(value))
+            if max(abs(told[0] - float(x)), abs(told[1] - float(level)), min(off, 360 - off) / 10) > float(near):
+                yield f"the value at {written(place)}"
+        jumps = [abs(b - a) for a, b in pairwise(picture.phases)]
+        if list(picture.across) != sorted(picture.across) or max(jumps, default=0) > 200:
+            yield "a phase that does not jump"
+        return
+    for (u, v), (n, p) in zip(picture.values, pairs, strict=True):
+        missed = _square((n[0] - u * p[0] + v * p[1], n[1] - u * p[1] - v * p[0]))
+        if missed > _square(p) * max(near * near, (u * u + v * v) * slack):
+            yield f"the value {written((u, v))}"
+    if not within((Fraction(-1), Fraction(0)), picture.window):
+        yield "-1 in the window"
 
 
 def _axes(picture: RegionPicture | LinePicture) -> tuple[str, ...]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, rank
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop
+from symobs.exact.algebraic.nyquist import told_of
 from symobs.exact.algebraic.root_loci import landmarks
 from symobs.exact.floating.riccati_check import Regulator, excess, is_proved
 from symobs.formula.tree import (
@@ -197,12 +198,28 @@ def has_margins(said: SentenceContext, closed: str, opened: str) -> bool:
     return told == right and told.keys() == said.slots.keys() and is_value(here, "stable", Letter(closed))
 
 
+def has_nyquist(said: SentenceContext, kind: str, closed: str, opened: str) -> bool:
+    """Return whether the counts, or the digits of a crossing or of the delay margin are told of the loop N/P."""
+    here = said.environment
+    first, second = (as_scalar(evaluate(Letter(name), here, Exact(here))) for name in (closed, opened))
+    told = {n: as_scalar(x.value).fraction() if isinstance(x, Decimals) else x for n, x in said.slots.items()}
+    right = told_of(kind, first, second, here.variable)
+    return told in [{n: t if kind == "counts" else Fraction(t) for n, t in each.items()} for each in right]
+
+
 def is_on_locus(said: SentenceContext, kind: str, opened: str, moved: str) -> bool:
     """Return whether the numbers told are those of a landmark of the root locus p + k q."""
     here = said.environment
     p, q = (as_scalar(evaluate(Letter(name), here, Exact(here))) for name in (opened, moved))
     told = {name: as_scalar(slot.value).fraction() for name, slot in said.slots.items() if isinstance(slot, Decimals)}
     return told.keys() == said.slots.keys() and told in landmarks(kind, p, q, here.variable)
+
+
+def leads_with(said: SentenceContext, letter: str, sign: str) -> bool:
+    """Return whether the leading coefficient of a polynomial has a sign."""
+    here = said.environment
+    lead = as_scalar(evaluate(Letter(letter), here, Exact(here))).coefficients(here.variable)[0]
+    return sign_of(lead, here.signs) == sign
 
 
 def has_asymptotes(said: SentenceContext, opened: str, moved: str) -> bool:

@@ -14,13 +14,14 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from symobs.exact import Factored, Matrix, RealNumber, Scalar
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
-from symobs.exact.algebraic.nyquist import nyquist
+from symobs.exact.algebraic.nyquist import nyquist, told_of
 from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
 from symobs.formula.tree import Decimals, Environment
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation.builder import Builder, predicate
+from symobs.stability.frequency_plots import bode_picture, nyquist_picture
 from symobs.system.specification import desired_polynomial, in_common_field, read_gain, reject_both
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import given
@@ -405,6 +406,7 @@ def write_margins(page: Builder, result: Margins) -> None:
         if result.answer["open"]:
             page.remark("margins_open", question=result.answer["open"])
             return
+        _frequency_response(page, result)
         if result.answer["modulus"] is None:
             page.conclude("margins_none", predicate("unstable", page["chi_cl"]))
             return
@@ -412,8 +414,48 @@ def write_margins(page: Builder, result: Margins) -> None:
         _gains(page, result)
         told = {"modulus": result.answer["modulus"], "peak": result.answer["peak"]}
         told |= {} if result.answer["phase_deg"] == INFINITE else {"phase": result.answer["phase_deg"]}
-        slots = {name: page.term(Decimals(Scalar.of(Fraction(value)))) for name, value in told.items()}
-        page.remark("margins_are" if "phase" in told else "margins_any_phase", **slots)
+        page.remark("margins_are" if "phase" in told else "margins_any_phase", **_rounded(page, told))
+        _delay(page, result)
+
+
+def _frequency_response(page: Builder, result: Margins) -> None:
+    """Write how often the frequency response surrounds −1, and where it meets the real axis and the unit circle."""
+    if not result._is_rational:  # noqa: SLF001 - its own page
+        return
+    loop = result.answer["closed"], result.answer["opened"], page.plant.variable
+    clock = "_discrete" if page.plant.is_discrete else ""
+    (counts,) = told_of("counts", *loop)
+    page.remark("margins_counts" if result.fields["encirclements"] is not None else "margins_on_boundary", **counts)
+    if result.fields["closed_loop_polynomial"] == result.fields["open_loop_polynomial"]:
+        return
+    for kind in ("axis", "level"):
+        for told in told_of(kind, *loop):
+            page.remark(f"margins_{kind}{clock}", **_rounded(page, told))
+    _pictures(page, result)
+
+
+def _pictures(page: Builder, result: Margins) -> None:
+    """Draw the Bode and the Nyquist picture."""
+    variable = page.plant.variable
+    loop = (result.answer["closed"] - result.answer["opened"]) / result.answer["opened"]
+    N, P = loop.numerator, loop.denominator
+    subject = page("(chi_cl - chi_o) / chi_o")
+    page.plot(bode_picture(N, P, variable), subject)
+    crossed = [
+        float(told["value"]) for told in told_of("axis", result.answer["closed"], result.answer["opened"], variable)
+    ]
+    page.plot(nyquist_picture(N, P, variable, crossed), subject)
+
+
+def _delay(page: Builder, result: Margins) -> None:
+    """Write the delay margin of a stable loop."""
+    clock = "_discrete" if page.plant.is_discrete else ""
+    for told in told_of("delay", result.answer["closed"], result.answer["opened"], page.plant.variable):
+        page.remark(f"margins_delay{clock}" if told else "margins_no_delay", **_rounded(page, told))
+
+
+def _rounded(page: Builder, told: Mapping[str, str]) -> dict[str, Term]:
+    return {name: page.term(Decimals(Scalar.of(Fraction(value)))) for name, value in told.items()}
 
 
 def _polynomials(page: Builder, result: Margins) -> None:

@@ -18,6 +18,7 @@ from symobs.exact.algebraic.root_loci import (
     branch_points,
     coprime,
     crossings,
+    crossings_with_letters,
     landmarks,
     leads_negatively,
     omega_digits,
@@ -28,6 +29,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.stability.plots import range_around
 from symobs.stability.plots import root_locus as paths_of_roots
+from symobs.system.conditions import sign_of
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import factored_form, given
 from symobs.tasks.analysis.stability_region.loop_polynomials import monic
@@ -102,10 +104,11 @@ class RootLocus(Result):
         return found
 
     @cached_property
-    def angles(self) -> list[Scalar]:
-        """The angles of the asymptotes in degrees; a lead of q without a number is taken to be positive."""
-        lead = self._coefficients("q")[0]
-        start = 0 if lead.is_constant and lead.fraction() < 0 else 1
+    def angles(self) -> list[Scalar] | None:
+        """The angles of the asymptotes in degrees, None where the sign of the lead of q is open."""
+        start = {"positive": 1, "negative": 0}.get(sign_of(self._coefficients("q")[0], self.plant.symbols.signs))
+        if start is None:
+            return None
         return [Scalar.of(180 * (2 * h + start)) / self.excess for h in range(self.excess)]
 
     @cached_property
@@ -134,9 +137,21 @@ class RootLocus(Result):
             found["departure"] = [_told(angle) for angle in angles_at(poles, zeros, even=even)]
             found["arrival"] = [_told(angle) for angle in angles_at(zeros, poles, even=even)]
         else:
-            found |= {"breakaway": self._branch_points, "crossings": None, "departure": None, "arrival": None}
+            found |= {"breakaway": self._branch_points, "crossings": self._crossings}
+            found |= {"departure": None, "arrival": None}
         found["stable_if"] = self.region.stable_if
         return found
+
+    @property
+    def _crossings(self) -> list[dict[str, Any]] | None:
+        """The crossings of the imaginary axis with symbols, where ω² is rational in them and neither ω² nor k surely ≤ 0."""
+        if self.plant.is_discrete:
+            return None
+        signs, never = self.plant.symbols.signs, {"negative", "nonpositive", "zero"}
+        listed = crossings_with_letters(*coprime(self.answer["p"], self.answer["q"]))
+        return [
+            {"k": k, "omega": f"sqrt({x})"} for k, x in listed if not {sign_of(k, signs), sign_of(x, signs)} & never
+        ]
 
     @cached_property
     def _branch_points(self) -> list[dict[str, Any]]:
@@ -253,6 +268,9 @@ def _ends(page: Builder, result: RootLocus) -> None:
             lead = result.answer["p" if letter == "chi_o" else "q"].coefficients(page.plant.variable)[0]
             of = page[letter] if lead.is_one else page[letter] / page.value(lead)
             page.remark(key, roots=Roots(of.formula, roots))
+    lead = sign_of(result.answer["q"].coefficients(page.plant.variable)[0], page.plant.symbols.signs)
+    if lead in {"positive", "negative"}:
+        page.remark("locus_axis_odd" if lead == "positive" else "locus_axis_even")
     if result.centroid is not None:
         page.remark("locus_asymptotes", excess=str(result.excess), centroid=page.value(result.centroid))
 

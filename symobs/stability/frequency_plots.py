@@ -1,0 +1,152 @@
+"""Nyquist and Bode pictures of a loop N/P of numbers: places on the boundary of stability, and the values there.
+
+Poles on the boundary are passed on the unstable side, in half circles so small that they hold no pole of the closed loop.
+"""
+
+from __future__ import annotations
+
+from cmath import exp, phase, pi
+from fractions import Fraction
+from math import degrees, log10, tan
+from typing import TYPE_CHECKING
+
+from symobs.exact.algebraic.root_location import complex_roots
+from symobs.formula.figures import BodePicture, NyquistPicture
+from symobs.stability.plots import range_around
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from symobs.exact import Scalar
+    from symobs.formula.figures import Place
+
+#: Nodes along the boundary, and along a half circle around a pole.
+_NODES, _ARC = 240, 40
+#: A root so near to the boundary stands on it; a curve is drawn up to so many times the largest crossing of the real axis.
+_ON, _SEEN = 1e-9, 2.2
+
+
+def nyquist_picture(N: Scalar, P: Scalar, variable: str, crossings: Sequence[float]) -> NyquistPicture:
+    """Return the Nyquist picture; `crossings` are the values of the loop on the real axis."""
+    discrete = variable == "z"
+    above, below = (_numbers(each, variable) for each in (N, P))
+    poles, zeros, closed = (_roots(each, variable) for each in (P, N, P + N))
+    size = max([1.0, *map(abs, crossings)])
+
+    def along(place: complex) -> float:
+        return phase(place) % (2 * pi) if discrete else place.imag
+
+    on = sorted((p for p in poles if _outside(p, discrete=discrete) is None and p.imag >= -_ON), key=along)
+    on = [p for k, p in enumerate(on) if not k or abs(p - on[k - 1]) > _ON]
+    radius = {p: _radius(p, [*poles, *zeros], closed, (above, below), size * _SEEN, discrete=discrete) for p in on}
+    boundary = _boundary([*poles, *zeros, *closed], discrete=discrete)
+    contour = [place for place in boundary if all(abs(place - p) > radius[p] for p in on)]
+    for p in on:
+        turned = p if discrete else 1
+        first = 0.0 if abs(p.imag) < _ON and (not discrete or p.real > 0) else -pi / 2
+        last = 0.0 if discrete and abs(p.imag) < _ON and p.real < 0 else pi / 2
+        arc = [p + radius[p] * turned * exp(1j * (first + (last - first) * k / _ARC)) for k in range(_ARC + 1)]
+        at = sum(along(place) <= along(p) for place in contour)
+        contour[at:at] = arc
+    places = [_rational(place) for place in contour]
+    values = [_rational(_at(above, place) / _at(below, place)) for place in contour]
+    seen = [v for v in values if max(map(abs, v)) <= 3 * _SEEN * size] + [(Fraction(-1), Fraction(0))]
+    ys = [y * sign for _, y in seen for sign in (1, -1)]
+    window = range_around([x for x, _ in seen], spread=True), range_around(ys, spread=True)
+    return NyquistPicture(tuple(places), tuple(values), window, discrete, bool(on))
+
+
+def bode_picture(N: Scalar, P: Scalar, variable: str) -> BodePicture:
+    """Return the Bode picture."""
+    discrete = variable == "z"
+    above, below = (_numbers(each, variable) for each in (N, P))
+    roots = [root for each in (N, P, P + N) for root in _roots(each, variable)]
+    contour: list[Place] = []
+    across, levels, phases = list[float](), list[float](), list[float]()
+    for place in _boundary(roots, discrete=discrete)[1:]:
+        omega = phase(place) if discrete else place.imag
+        bottom = _at(below, place)
+        if not bottom or not omega > 0 or not (value := _at(above, place) / bottom):
+            continue
+        angle = degrees(phase(value))
+        if phases:
+            angle += 360 * round((phases[-1] - angle) / 360)
+        elif angle > 90 + 1e-6:
+            angle -= 360
+        contour.append(_rational(place))
+        across.append(log10(omega))
+        levels.append(20 * log10(abs(value)))
+        phases.append(angle)
+    inner = sorted(levels)[len(levels) // 50 : len(levels) - len(levels) // 50]
+    window = (Fraction(across[0]), Fraction(across[-1])), range_around([Fraction(x) for x in (*inner, 0)], spread=True)
+    over, modulus, turned = (tuple(map(Fraction, each)) for each in (across, levels, phases))
+    return BodePicture(tuple(contour), over, modulus, turned, window, discrete)
+
+
+def _boundary(roots: Sequence[complex], *, discrete: bool) -> list[complex]:
+    """Return places on the upper half of the boundary, two decades beyond the roots, or around the circle."""
+    if discrete:
+        angles = [pi * (10 ** (-3 * (1 - k / _NODES))) for k in range(_NODES)]
+        angles += [pi * k / _NODES for k in range(1, _NODES)]
+        found = [complex(1, 0)]
+        for angle in sorted(set(angles)):
+            t = Fraction(tan(angle / 2))
+            below = 1 + t * t
+            found.append(complex(float((1 - t * t) / below), float(2 * t / below)))
+        return [*found, complex(-1, 0)]
+    sizes = [abs(root) for root in roots if abs(root) > _ON] or [1.0]
+    low, high = log10(min(sizes)) - 1.5, log10(max(sizes)) + 1.5
+    near = [root.imag for root in roots if root.imag > _ON]
+    beside = [y * (1 + sign * 10**-k) for y in near for sign in (1, -1) for k in (1, 1.3, 1.6, 2, 2.5, 3)]
+    grid = [10 ** (low + (high - low) * k / _NODES) for k in range(_NODES + 1)]
+    return [complex(0, 0), *(complex(0, y) for y in sorted({*grid, *beside}))]
+
+
+def _radius(
+    pole: complex,
+    ends: Sequence[complex],
+    closed: Sequence[complex],
+    loop: tuple[Sequence[float], Sequence[float]],
+    wanted: float,
+    *,
+    discrete: bool,
+) -> float:
+    """Return a radius with values as large as wanted on the half circle, far from other roots and from unstable poles."""
+    others = [abs(root - pole) for root in ends if abs(root - pole) > _ON]
+    unstable = [abs(root - pole) for root in closed if (_outside(root, discrete=discrete) or 0) > 0]
+    size = min([1.0, *others, *unstable]) / 2
+    outward = pole if discrete else 1
+    for _ in range(60):
+        place = pole + size * outward
+        if abs(_at(loop[0], place)) >= wanted * abs(_at(loop[1], place)):
+            break
+        size *= 0.85
+    return size
+
+
+def _outside(root: complex, *, discrete: bool) -> float | None:
+    """Return how far a root lies on the unstable side, None on the boundary."""
+    far = abs(root) - 1 if discrete else root.real
+    return None if abs(far) < _ON else far
+
+
+def _numbers(polynomial: Scalar, variable: str) -> list[float]:
+    return [float(c.fraction()) for c in polynomial.coefficients(variable)]
+
+
+def _roots(polynomial: Scalar, variable: str) -> list[complex]:
+    if polynomial.degree(variable) < 1:
+        return []
+    found = complex_roots([c.fraction() for c in polynomial.coefficients(variable)])
+    return [complex(float(x), float(y)) for x, y in found]
+
+
+def _at(coefficients: Sequence[float], place: complex) -> complex:
+    value = 0j
+    for coefficient in coefficients:
+        value = value * place + coefficient
+    return value
+
+
+def _rational(value: complex) -> Place:
+    return Fraction(value.real), Fraction(value.imag)
