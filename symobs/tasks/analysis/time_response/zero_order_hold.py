@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from symobs.proof.certificate.claims import Claim
     from symobs.proof.derivation.builder import Builder
     from symobs.system.specification import Horizon, Name, TransferFunctionText
+    from symobs.system.transfer_function_text import WrittenTransferFunction
 
 
 @dataclass
@@ -229,6 +230,9 @@ def zero_order_hold(
     if T == INFINITE:
         message = "the sampling period inf is no number"
         raise InputError(message, where="specification.sampling_period", repair='write "T", or a number above 0')
+    if controller is not None:
+        plant = plant.knowing(controller)
+        controller = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
     if rule is None and controller is not None:
         message, repair = "a controller is carried over by a rule", 'give rule = "tustin", "forward" or "backward"'
         raise InputError(message, where="specification.rule", repair=repair)
@@ -237,7 +241,7 @@ def zero_order_hold(
     return over_horizon(lambda: choose("zero_order_hold", method, "integral").solve(plant, T), "sampling_period")
 
 
-def _by_rule(plant: StateSpace, rule: str, T: Scalar, controller: object) -> Result:
+def _by_rule(plant: StateSpace, rule: str, T: Scalar, controller: WrittenTransferFunction | None) -> Result:
     """Return the plant or the controller that a rule makes; raises `InputError` for no rule."""
     if rule not in RULES:
         raise InputError(f"{rule!r} is no rule", where="specification.rule", repair=f"write {', '.join(RULES)}")
@@ -245,6 +249,4 @@ def _by_rule(plant: StateSpace, rule: str, T: Scalar, controller: object) -> Res
     plant = plant.with_symbols(replace(plant.symbols, signs=signs))
     if controller is None:
         return SampledPlant.of(plant, rule, T)
-    plant = plant.knowing(controller)
-    written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
-    return SampledController.of(plant, rule, T, written)
+    return SampledController.of(plant, rule, T, controller)

@@ -33,7 +33,7 @@ def points_of(result: Any, draw: random.Random, count: int) -> list[dict[str, Fr
         return Fraction(draw.randint(-8, 8), draw.choice([1, 2, 4]))
 
     def equations(one: Any) -> Any:
-        yield from (relation.lhs - relation.rhs for relation in one.conditions)
+        yield from (relation.lhs - relation.rhs for relation in one.conditions if isinstance(relation, sympy.Rel))
         for case in one.cases:
             yield from (relation.lhs - relation.rhs for relation in case.when)
             if case.result is not None:
