@@ -250,7 +250,11 @@ def evaluate(result: Any, points: Mapping[Any, Any]) -> dict[str, Any]:
 
     fields = _fields(result)
     if not fields:
-        words = "its answers are functions of t" if result.in_time else "its answers are polynomials or words"
+        words = (
+            f"its answers are functions of {result.argument}"
+            if result.in_time
+            else "its answers are polynomials or words"
+        )
         repair = "take sympy.lambdify on the field itself" if result.in_time else "read the fields themselves"
         raise InputError(f"{result.task} has no field of numbers: {words}", where="evaluate", repair=repair)
     given = _read(points, result, fields)
@@ -295,7 +299,7 @@ def _fill(result: Any, fields: Mapping[str, Any], points: Mapping[str, Any], whe
 
 def _entries_of(result: Any, fields: Mapping[str, Any]) -> list[Scalar | None]:
     """Return the entries of the fields of a case; None for those of a field that is missing there or has another shape."""
-    apart, found = {result.plant.variable, "t"}, list[Scalar | None]()
+    apart, found = {result.plant.variable, "t", result.argument}, list[Scalar | None]()
     for name, field in fields.items():
         own = result.numbers.get(name)
         alike = own is not None and getattr(own, "shape", None) == getattr(field, "shape", None)
@@ -308,7 +312,7 @@ def _all_hold(conditions: Iterable[Condition], result: Any, points: Mapping[str,
     """Return what is known of a conjunction at each point: the least that is known of its conditions."""
     import numpy as np
 
-    apart = {result.plant.variable, "t", EIGENVALUE}
+    apart = {result.plant.variable, "t", result.argument, EIGENVALUE}
     known = np.full(count, _HOLDS)
     for condition in conditions:
         if not symbols_in(condition.expression) & apart:
@@ -335,7 +339,7 @@ def _known(condition: Condition, points: Mapping[str, Any]) -> Any:
 
 def _fields(result: Any) -> dict[str, Any]:
     """Return the fields of numbers: matrices, scalars and integers without time or the variable of polynomials."""
-    apart = {result.plant.variable, "t"}
+    apart = {result.plant.variable, "t", result.argument}
     return {
         name: value
         for name, value in result.numbers.items()

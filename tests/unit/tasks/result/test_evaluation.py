@@ -41,12 +41,13 @@ def test_refusals(points: dict[str, Any], message: str) -> None:
     [
         symobs.response(symobs.StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 0]"), input="1"),
         symobs.matrix_exponential(symobs.StateSpace("[0 1; 0 -1]")),
+        symobs.matrix_exponential(symobs.StateSpace("[0 1; 0 2]", dt=True)),
     ],
-    ids=lambda result: result.task,
+    ids=lambda result: f"{result.task} of {result.argument}",
 )
 @tabled
 def test_functions_of_time_alone_are_refused(result: Any, points: dict[str, Any]) -> None:
-    with pytest.raises(InputError, match="has no field of numbers: its answers are functions of t"):
+    with pytest.raises(InputError, match=f"has no field of numbers: its answers are functions of {result.argument}"):
         result.evaluate(points)
 
 
