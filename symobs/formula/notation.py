@@ -200,6 +200,8 @@ LETTERS: dict[str, LetterForm] = {
     "sigma_d": LetterForm(r"\sigma", "σ", "distance of a dominant pair from the imaginary axis"),
     "omega_d": LetterForm(r"\omega_{\mathrm d}", "ω_d", "imaginary part of a dominant pair"),
     "T_s": LetterForm(r"T_{\mathrm s}", "T_s", "settling time"),
+    "exp_sT": LetterForm(r"e^{-s T_{\mathrm t}}", "e^(−s T_t)", "transfer function of a dead time"),
+    "T_t": LetterForm(r"T_{\mathrm t}", "T_t", "dead time"),
     "M_p": LetterForm(r"M_{\mathrm p}", "M_p", "overshoot"),
     "b_P": LetterForm("b({v})", "b({v})", "numerator of the plant"),
     "F": LetterForm("F({v})", "F({v})", "compensator"),

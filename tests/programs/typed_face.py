@@ -137,7 +137,7 @@ def signature(task: Task) -> str:
         default = parameters[name].default
         optional = " | None" if default is None else ""
         keywords.append(f"    {name}: {KINDS[kind]}{optional} = {default!r},".replace("'", '"'))
-    keywords.append("    floats: str | None = None,")
+    keywords += ["    floats: str | None = None,", "    pade: int | str | None = None,"]
     own = own_class(task)
     told = f'    """{task.summary}"""'
     star = "    *,\n" if keywords else ""

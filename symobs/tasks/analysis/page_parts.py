@@ -194,6 +194,7 @@ def given(
             page.environment = page.environment.extended_by(signals={"y": output.formula})
         page.given(*relations)
         _hold_to_letters(page, by)
+        _state_dead_time(page)
         if plant.is_from_floats:
             page.remark("from_floats")
         if plant.is_rounded:
@@ -207,6 +208,18 @@ def given(
         for name, desired_polynomial in desired:
             if desired_polynomial is not None:
                 _asked(page, name, desired_polynomial)
+
+
+def _state_dead_time(page: Builder) -> None:
+    """State the dead time at the input, or what stands for it."""
+    plant = page.plant
+    if plant.delay is not None:
+        page.remark("dead_time", time=relation(page.set("T_t", plant.delay), plant.delay))
+    if plant.delays:
+        page.remark("dead_time_steps", number=str(plant.delays))
+    if plant.approximates is not None:
+        delay, order = plant.approximates
+        page.remark("dead_time_pade", time=relation(page.set("T_t", delay), delay), order=str(order))
 
 
 def _as_given(page: Builder, matrix: Matrix) -> Term:

@@ -334,6 +334,7 @@ def margins(
     Returns gain_down and gain_up, the ends of the interval around 1 of the gains that keep the loop stable, and slowest, the
     largest real part (modulus) of its poles, exactly; phase_deg, the smallest change of phase either way that does not,
     modulus, the smallest distance from −1, and peak, the largest |1/(1 + loop)|, to six certain digits after the point.
+    Of a plant with a dead time the loop is that of a controller; what has no closed form has twelve certain digits.
     Where it is unstable, too: open_loop_unstable, encirclements (of −1, counterclockwise) and closed_loop_unstable,
     axis_crossings (omega, value), gain_crossover, phase_crossover, and delay_margin, the least φ/ω.
     The verdict is `no` where the closed loop is not stable, `undecided` with symbols.  Raises `InputError` for several
@@ -350,6 +351,10 @@ def margins(
             reject_both("controller", controller, value, None, other=name)
         plant.require("B", "C", task="margins")
         plant = plant.in_digits()
+        if plant.delay is not None:
+            from symobs.tasks.design.margins.delayed_margins import delayed_margins  # noqa: PLC0415 - dead times alone
+
+            return delayed_margins(plant, controller).asked(method)
         written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
         found: Result = chosen.solve(plant, None, written, loop_of_controller(plant, written))
         return found.asked(method)

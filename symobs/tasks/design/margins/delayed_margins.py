@@ -1,0 +1,115 @@
+"""Margins of a loop with a dead time T: gain, phase, distance from −1, and what is counted, every digit certain."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from symobs.exact.algebraic.dead_time_margins import (
+    exact_value,
+    interval_around_one,
+    landmarks_of,
+    unstable_after,
+    unstable_before,
+)
+from symobs.exact.algebraic.loop_distances import MARGIN_DIGITS
+from symobs.exact.algebraic.root_loci import LOCUS_DIGITS, frequency
+from symobs.ground.dataclass import dataclass
+from symobs.proof.certificate.claims import Statement
+from symobs.tasks.analysis.page_parts import given
+from symobs.tasks.analysis.stability_region.delayed_region import (
+    DelayedLoopResult,
+    delayed_loop,
+    rounded,
+    tell,
+    write_delayed_loop,
+)
+from symobs.tasks.result import Result, page_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from symobs.proof.certificate.claims import Claim
+    from symobs.proof.derivation.builder import Builder
+    from symobs.system import StateSpace
+    from symobs.system.transfer_function_text import WrittenTransferFunction
+
+
+@dataclass
+class DelayedMargins(DelayedLoopResult, Result):
+    """The margins of N/P e^{−sT}; none where the closed loop is not stable."""
+
+    written: WrittenTransferFunction
+    gain: str = ""
+
+    task: ClassVar[str] = "margins"
+    answered_by = ("gain_down", "gain_up", "phase_deg")
+
+    def claims(self) -> Iterator[Claim | Statement]:
+        """Yield what P and N are, how many poles are unstable, and the margins."""
+        yield from self.claims_of_loop()
+        yield Statement(
+            "the unstable poles", lambda: "the argument principle, by enclosures" if self.told("counts") else ""
+        )
+        if self.is_stable:
+            how = "interval arithmetic"
+            yield Statement("gain, angle, distance and peak", lambda: how if self.told("margins") else "")
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether the closed loop is stable."""
+        return unstable_after(self.distances.loop) == 0
+
+    @property
+    def verdict(self) -> str:
+        """`no` where the closed loop is not stable."""
+        return "yes" if self.is_stable else "no"
+
+    @cached_property
+    def fields(self) -> Mapping[str, Any]:
+        """The margins, the counts, and the crossings of the real axis up to those that decide the gain margin."""
+        distances = self.distances
+        loop = distances.loop
+        before, after = unstable_before(loop), unstable_after(loop)
+        found: dict[str, Any] = dict.fromkeys(("gain_down", "gain_up", "phase_deg", "modulus", "peak"))
+        if self.is_stable:
+            low, high = interval_around_one(loop)
+            found |= {"gain_down": exact_value(low), "gain_up": exact_value(high)}
+            found |= {"phase_deg": distances.phase(MARGIN_DIGITS)}
+            found |= {"modulus": distances.modulus(MARGIN_DIGITS), "peak": distances.peak(MARGIN_DIGITS)}
+        found |= {"characteristic_function": self.function, "open_loop_polynomial": self.answer["P"]}
+        found |= {"open_loop_unstable": before, "closed_loop_unstable": after}
+        found["encirclements"] = None if after is None else before - after
+        crossings = sorted(loop.decided[1], key=lambda crossing: crossing.low)
+        places = [landmarks_of(crossing) for crossing in crossings]
+        found["axis_crossings"] = [{name: place[name] for name in ("omega", "value")} for place in places]
+        found["phase_crossover"] = [p["omega"] for p, c in zip(places, crossings, strict=True) if c.side > 0]
+        found["gain_crossover"] = [frequency(x).text("x") for x in distances.crossovers]
+        found["delay_margin"] = distances.delay_margin(LOCUS_DIGITS)
+        return found
+
+
+def delayed_margins(plant: StateSpace, controller: object) -> DelayedMargins:
+    """Return the margins of the loop of a plant with a dead time and a controller; raises `InputError`."""
+    moved, written, loop = delayed_loop(plant, controller, None)
+    return DelayedMargins(moved, "boundary", loop, written)
+
+
+@page_of(DelayedMargins)
+def write_delayed_margins(page: Builder, result: DelayedMargins) -> None:
+    """Write the whole page."""
+    given(page)
+    with page.section("margins"):
+        write_delayed_loop(page, result)
+        (counts,) = result.told("counts")
+        page.remark("dead_time_counts" if "around" in counts else "dead_time_on_axis", **counts)
+        tell(page, result, "axis")
+        tell(page, result, "level")
+        if not result.is_stable:
+            page.remark("dead_time_no_margins")
+            return
+        tell(page, result, "ends")
+        (told,) = result.told("margins")
+        page.remark("dead_time_margins" if "phase" in told else "dead_time_any_phase", **rounded(page, told))
+        for told in result.told("delay"):
+            page.remark("dead_time_delay" if told else "dead_time_any_delay", **rounded(page, told))
