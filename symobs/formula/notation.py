@@ -202,6 +202,7 @@ LETTERS: dict[str, LetterForm] = {
     "T_s": LetterForm(r"T_{\mathrm s}", "T_s", "settling time"),
     "exp_sT": LetterForm(r"e^{-s T_{\mathrm t}}", "e^(−s T_t)", "transfer function of a dead time"),
     "T_t": LetterForm(r"T_{\mathrm t}", "T_t", "dead time"),
+    "T_p": LetterForm(r"T_{\mathrm p}", "T_p", "dead time by a Padé approximation"),
     "M_p": LetterForm(r"M_{\mathrm p}", "M_p", "overshoot"),
     "b_P": LetterForm("b({v})", "b({v})", "numerator of the plant"),
     "F": LetterForm("F({v})", "F({v})", "compensator"),

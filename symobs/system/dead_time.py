@@ -1,16 +1,16 @@
 """A dead time at the input of a plant: read, realised by delays in discrete time, or by a Padé approximation.
 
-e^{−sT} ≈ R(−sT)/R(sT) with R(x) = Σ (2n − k)! n!/((2n)! k! (n − k)!) xᵏ, of modulus 1 on the imaginary axis.
+e^{−sT} ≈ R(−sT)/R(sT) with R(x) = Σ (2n − k)!/(k! (n − k)!) xᵏ, of modulus 1 on the imaginary axis.
 Source: G. H. Golub and C. F. Van Loan, Matrix Computations, 4th ed., sec. 9.3.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from math import comb, factorial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from symobs.exact import Matrix, Scalar
+from symobs.exact.algebraic.dead_time import pade_coefficients
 from symobs.exact.linear_algebra.transfer_function import Realisation
 from symobs.ground.errors import InputError
 from symobs.system.conditions import sign_of
@@ -91,8 +91,7 @@ def _behind(matrices: Matrices, first: Realisation) -> Matrices:
 def pade(delay: Scalar, order: int) -> tuple[Scalar, Scalar]:
     """Return numerator and denominator of the Padé approximation of e^{−sT} with as many zeros as poles."""
     x, above, below = Scalar.symbol("s") * delay, Scalar.of(0), Scalar.of(0)
-    for k in range(order + 1):
-        coefficient = Scalar.of(factorial(2 * order - k) * comb(order, k)) / factorial(order)
+    for k, coefficient in enumerate(pade_coefficients(order)):
         above += coefficient * (-x) ** k
         below += coefficient * x**k
     return above, below

@@ -11,7 +11,7 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import cached_property, cmp_to_key
 from itertools import pairwise
-from math import ceil, floor, isqrt
+from math import ceil, factorial, floor, isqrt
 from typing import TYPE_CHECKING, Any
 
 from flint import acb, arb, fmpz_poly
@@ -279,6 +279,11 @@ class DelayedLoop:
                     return nearest
             bits *= 2
         raise TooLarge("the number of unstable roots")
+
+
+def pade_coefficients(order: int) -> tuple[int, ...]:
+    """Return (2n − k)!/(k! (n − k)!) for k = 0 … n: e^{−x} ≈ R(−x)/R(x) with these coefficients of R."""
+    return tuple(factorial(2 * order - k) // (factorial(k) * factorial(order - k)) for k in range(order + 1))
 
 
 Edge = Fraction | DelayedCrossing

@@ -10,7 +10,7 @@ from fractions import Fraction
 from functools import cached_property, lru_cache, reduce
 from typing import TYPE_CHECKING
 
-from flint import acb, arb
+from flint import acb, arb, fmpz_poly
 
 from symobs.exact.algebraic.dead_time import (
     MOST_PIECES,
@@ -20,6 +20,7 @@ from symobs.exact.algebraic.dead_time import (
     ball_of,
     fraction_ball,
     on_and_right,
+    pade_coefficients,
 )
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, certain
 from symobs.exact.algebraic.real_algebraic import (
@@ -27,10 +28,11 @@ from symobs.exact.algebraic.real_algebraic import (
     RealNumber,
     ends_of,
     real_roots,
+    roots_of_scalar,
     rounded_to,
     simplest_between,
 )
-from symobs.exact.algebraic.root_loci import LOCUS_DIGITS
+from symobs.exact.algebraic.root_loci import LOCUS_DIGITS, on_boundary
 from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
 from symobs.exact.ideals import TooLarge
@@ -38,8 +40,6 @@ from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from flint import fmpz_poly
 
     from symobs.exact.algebraic.dead_time import Edge
 
@@ -310,3 +310,21 @@ def unstable_after(loop: DelayedLoop) -> int | None:
     """Return how many roots of P + N e^{−sT} have one, None where others are on the axis."""
     on, right = on_and_right(loop.shared)
     return None if on or loop.P[0] == -loop.N[0] else loop.unstable(Fraction(1)) + right
+
+
+def pade_error(numerator: Scalar, denominator: Scalar, delay: Scalar, order: int) -> list[dict[str, str]]:
+    """Return the largest ω with |N/P| = 1, and the error of the phase of the Padé approximation there, in degrees."""
+    level = on_boundary(numerator, numerator, "s")[2] - on_boundary(denominator, denominator, "s")[2]
+    found = [x for x in roots_of_scalar(level, "x") if x.sign > 0] if "x" in level.names else []
+    if not found:
+        return []
+    root, T = _root_of(found[-1]), delay.fraction()
+
+    def angle(bits: int) -> arb:
+        with Precision(bits):
+            x = root(bits) * fraction_ball(T)
+            below = at(fmpz_poly(list(pade_coefficients(order))), acb(0, x))
+            turned: arb = (acb(0, -x).exp() * below / below.conjugate()).arg()
+            return turned * 180 / arb.pi()
+
+    return [{"omega": _certain(root, LOCUS_DIGITS), "angle": _certain(angle, LOCUS_DIGITS)}]

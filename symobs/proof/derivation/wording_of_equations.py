@@ -5,8 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.exact import EIGENVALUE, Matrix, Scalar, rank
-from symobs.exact.algebraic.dead_time_margins import WORDS_OF_DEAD_TIME, told_of_dead_time
+from symobs.exact import EIGENVALUE, Matrix, Scalar, rank, transfer
+from symobs.exact.algebraic.dead_time_margins import WORDS_OF_DEAD_TIME, pade_error, told_of_dead_time
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop
 from symobs.exact.algebraic.nyquist import told_of
 from symobs.exact.algebraic.root_loci import landmarks
@@ -218,6 +218,16 @@ def has_dead_time(said: SentenceContext, kind: str, moved: str, opened: str, del
     told = {n: as_scalar(x.value).fraction() if isinstance(x, Decimals) else x for n, x in slots.items()}
     right = told_of_dead_time(kind, P, N, T, sign)
     return told in [{n: t if n in WORDS_OF_DEAD_TIME else Fraction(t) for n, t in each.items()} for each in right]
+
+
+def misses_phase(said: SentenceContext, delay: str) -> bool:
+    """Return whether the error of a Padé approximation is told at a crossover of the plant, which has it at its input."""
+    here = said.environment
+    A, B, C = (evaluate(Letter(name), here, Exact(here)) for name in "ABC")
+    found = transfer(A, B, C, as_scalar(here.values.get("D", Scalar.of(0))), here.variable)
+    right = pade_error(*found, as_scalar(evaluate(Letter(delay), here, Exact(here))), int(str(said.slots["order"])))
+    told = {n: as_scalar(x.value).fraction() for n, x in said.slots.items() if isinstance(x, Decimals)}
+    return told in [{n: Fraction(t) for n, t in each.items()} for each in right]
 
 
 def is_on_locus(said: SentenceContext, kind: str, opened: str, moved: str) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from itertools import accumulate
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -16,7 +17,9 @@ from symobs.exact import (
     product_of,
     root_of_pole,
     roots_of,
+    transfer,
 )
+from symobs.exact.algebraic.dead_time_margins import pade_error
 from symobs.exact.core.generators import NotWritten, exponentials_in, symbols_named
 from symobs.exact.numerals.written_digits import DATA_DIGITS
 from symobs.formula.tree import (
@@ -217,9 +220,15 @@ def _state_dead_time(page: Builder) -> None:
         page.remark("dead_time", time=relation(page.set("T_t", plant.delay), plant.delay))
     if plant.delays:
         page.remark("dead_time_steps", number=str(plant.delays))
-    if plant.approximates is not None:
-        delay, order = plant.approximates
-        page.remark("dead_time_pade", time=relation(page.set("T_t", delay), delay), order=str(order))
+    if plant.approximates is None:
+        return
+    delay, order = plant.approximates
+    page.remark("dead_time_pade", time=relation(page.set("T_p", delay), delay), order=str(order))
+    if plant.inputs == plant.outputs == 1 and not {*plant.matrices.symbols, *delay.names}:
+        m = plant.matrices
+        for told in pade_error(*transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable), delay, order):
+            slots = {name: page.term(Decimals(Scalar.of(Fraction(text)))) for name, text in told.items()}
+            page.remark("dead_time_pade_error", order=str(order), **slots)
 
 
 def _as_given(page: Builder, matrix: Matrix) -> Term:

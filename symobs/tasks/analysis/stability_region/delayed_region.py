@@ -202,7 +202,7 @@ def delayed_region(
         repair = 'ask for one gain: controller = "k", parameters = ["k"]; or give pade = 2'
         raise InputError(message, where="specification.parameters", repair=repair)
     moved, written, loop = delayed_loop(plant, controller, names[0])
-    return DelayedRegion(moved, "routh", loop, written, names[0])
+    return DelayedRegion(moved, "crossings", loop, written, names[0])
 
 
 # -- the page --------------------------------------------------------------------------------------------------------------

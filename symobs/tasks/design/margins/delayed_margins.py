@@ -16,6 +16,7 @@ from symobs.exact.algebraic.loop_distances import MARGIN_DIGITS
 from symobs.exact.algebraic.root_loci import LOCUS_DIGITS, frequency
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Statement
+from symobs.stability.frequency_plots import bode_picture, nyquist_picture
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.stability_region.delayed_region import (
     DelayedLoopResult,
@@ -105,6 +106,7 @@ def write_delayed_margins(page: Builder, result: DelayedMargins) -> None:
         page.remark("dead_time_counts" if "around" in counts else "dead_time_on_axis", **counts)
         tell(page, result, "axis")
         tell(page, result, "level")
+        _pictures(page, result)
         if not result.is_stable:
             page.remark("dead_time_no_margins")
             return
@@ -113,3 +115,12 @@ def write_delayed_margins(page: Builder, result: DelayedMargins) -> None:
         page.remark("dead_time_margins" if "phase" in told else "dead_time_any_phase", **rounded(page, told))
         for told in result.told("delay"):
             page.remark("dead_time_delay" if told else "dead_time_any_delay", **rounded(page, told))
+
+
+def _pictures(page: Builder, result: DelayedMargins) -> None:
+    """Draw the Bode and the Nyquist picture."""
+    N, P, subject, delay = result.answer["N"], result.answer["P"], page("q / chi_o"), result.delay.fraction()
+    loop = N / P
+    page.plot(bode_picture(loop.numerator, loop.denominator, page.plant.variable, delay), subject)
+    crossed = [float(told["value"]) for told in result.told("axis")]
+    page.plot(nyquist_picture(loop.numerator, loop.denominator, page.plant.variable, crossed, delay), subject)
