@@ -17,6 +17,7 @@ from symobs.formula.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import CertificateRejected, InputError, OpenEquality, ProblemErrors, SymobsError
 from symobs.problem.agreement import agrees, functions_agree
+from symobs.problem.landmarks import LANDMARKS, landmarks_agree
 from symobs.system.conditions import Condition, vanishing_factors
 from symobs.tasks.result.in_convention import ResultInConvention
 
@@ -497,6 +498,8 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
         return parse_scalar(expected, names, where=where) == Scalar.of(found)
     if found is None or isinstance(found, (str, bool)):
         return isinstance(expected, type(found)) and bool(found == expected)
+    if isinstance(found, (list, tuple)) and name in LANDMARKS:
+        return landmarks_agree(name, list(found), expected, names, where)
     if isinstance(found, (list, tuple)):
         wanted = expected if isinstance(expected, list) else [expected]
         if name == "kernel" and found and wanted:

@@ -68,7 +68,7 @@ def _at(polynomial: fmpz_poly, place: acb) -> acb:
     return value
 
 
-def _places(root: Root, bits: int) -> acb:
+def enclosed(root: Root, bits: int) -> acb:
     """Return an enclosure of a root, numbered as SymPy does: real ones first, ascending, then pairs by real part."""
     factor = whole(root.factor, root.variable)
     with Precision(bits):
@@ -133,7 +133,7 @@ def gain_at(root: Root, p: Scalar, q: Scalar, variable: str) -> RealNumber | Non
     bits = FIRST_BITS
     while True:
         with Precision(bits):
-            place = _places(root, bits)
+            place = enclosed(root, bits)
             value = -_at(above, place) / arb_of(scale, bits) * arb_of(other, bits) / _at(below, place)
             if value.is_finite():
                 near = []
@@ -147,8 +147,8 @@ def gain_at(root: Root, p: Scalar, q: Scalar, variable: str) -> RealNumber | Non
 
 
 def _parts(root: Root) -> tuple[str, str]:
-    real = certain(lambda bits: _places(root, bits).real, LOCUS_DIGITS)
-    imaginary = certain(lambda bits: _places(root, bits).imag, LOCUS_DIGITS)
+    real = certain(lambda bits: enclosed(root, bits).real, LOCUS_DIGITS)
+    imaginary = certain(lambda bits: enclosed(root, bits).imag, LOCUS_DIGITS)
     return real or "", imaginary or ""
 
 
@@ -156,7 +156,7 @@ def _upper(root: Root) -> bool:
     """Return whether the imaginary part is not negative."""
     bits = FIRST_BITS
     while True:
-        place = _places(root, bits)
+        place = enclosed(root, bits)
         if place.imag == 0 or place.imag > 0:
             return True
         if place.imag < 0:
@@ -310,7 +310,7 @@ def leads_negatively(q: Scalar, variable: str) -> bool:
 def _is_complex(root: Root) -> bool:
     bits = FIRST_BITS
     while True:
-        place = _places(root, bits)
+        place = enclosed(root, bits)
         if place.imag == 0:
             return False
         if place.imag > 0 or place.imag < 0:
@@ -320,13 +320,13 @@ def _is_complex(root: Root) -> bool:
 
 def _angle(root: Root, roots: Sequence[Root], others: Sequence[Root], *, start: int, order: int) -> str:
     def total(bits: int) -> arb:
-        here = _places(root, bits)
+        here = enclosed(root, bits)
         angle = arb(180 * start)
         for each in others:
-            angle += _argument(here - _places(each, bits)) * 180 / arb.pi()
+            angle += _argument(here - enclosed(each, bits)) * 180 / arb.pi()
         for each in roots:
             if each != root:
-                angle -= _argument(here - _places(each, bits)) * 180 / arb.pi()
+                angle -= _argument(here - enclosed(each, bits)) * 180 / arb.pi()
         angle /= order
         turns = round(float(angle.mid()) / 360)
         angle -= 360 * turns

@@ -7,7 +7,7 @@ PHRASES: dict[str, str] = {
     "dead_time_steps": "The plant has a dead time of {number} sampling periods at its input, which is contained in these equations: each of them is a state, a delay by one period.",
     "dead_time_pade": "The plant has the dead time {time} at its input. It is contained in these equations by its Padé approximation of order {order}, a rational function of modulus 1 on the imaginary axis whose phase differs from that of the dead time§: what follows holds for the approximation, and for the plant with the dead time approximately.",
     "dead_time_pade_error": "At the largest frequency at which the modulus of the plant is 1, {omega}, the phase of this approximation of order {order} is off by {angle} degrees, rounded to six digits after the point.",
-    "dead_time_numerator": "and the numerator of the loop, without the dead time, is",
+    "dead_time_numerator": "The numerator of the loop, without the dead time, is",
     "dead_time_poles": "The poles of the closed loop are the roots of $chi_o + q exp_sT$; finitely many of them have a real part above any given one§.",
     "dead_time_poles_gain": "The poles of the closed loop are the roots of $chi_o$ plus {gain} times $q exp_sT$; finitely many of them have a real part above any given one§.",
     "dead_time_moves": "They move continuously with the gain, so the number of unstable poles changes only where some are on the imaginary axis§.",
@@ -63,6 +63,3 @@ THEOREMS: dict[str, str] = {
     "dead_time_roots": "gu2003, ch. 1 and 2",
     "pade_approximation": "golub2013, sec. 9.3",
 }
-
-#: Phrases that go on with the sentence before them.
-CONTINUES = ("dead_time_numerator",)

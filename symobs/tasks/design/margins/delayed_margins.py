@@ -54,7 +54,7 @@ class DelayedMargins(DelayedLoopResult, Result):
         )
         if self.is_stable:
             how = "interval arithmetic"
-            yield Statement("gain, angle, distance and peak", lambda: how if self.told("margins") else "")
+            yield Statement("angle, distance and peak", lambda: how if self.told("margins") else "")
 
     @property
     def is_stable(self) -> bool:

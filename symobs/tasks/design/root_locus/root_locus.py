@@ -57,7 +57,7 @@ class RootLocus(Result):
     sign: int
 
     task: ClassVar[str] = "root_locus"
-    answered_by = ("breakaway", "crossings")
+    answered_by = ("breakaway", "crossings", "stable_if")
 
     def claims(self) -> Iterator[Claim]:
         """Yield what p and q are; the region of stability is claimed by its own task."""
