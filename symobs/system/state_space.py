@@ -166,8 +166,9 @@ class StateSpace:
     Raises `ShapeMismatch`, `InexactInput` (floats), `ExpressionError`, `UnknownName`; all of them are `InputError`.
     """
 
-    #: Whether irrational data were rounded.
+    #: Whether irrational data were rounded, and whether it is a case of another plant.
     is_rounded = False
+    is_stratum = False
     #: The dead time at the input, None without one; in discrete time it is realised, by `delays` of one period each.
     delay: Scalar | None = None
     delays = 0
@@ -230,8 +231,8 @@ class StateSpace:
         self.is_in_decimals = any(has_decimals(value) for value in (A, B, C, D))
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
-        #: Whether these are the values of a plant with parameters: what was a case of its results is a result, no refusal.
-        self.is_stratum = self.is_at_values = False
+        #: The plant with parameters whose values these are: what was a case of its results is a result, no refusal.
+        self.general: StateSpace | None = None
         given = [part for part in parts.values() if part is not None]
         known.refuse_alike({*known.signs}.union(*(part.names for part in given)), "symbols")
         if any("t" in symbols_in(part) for part in given):

@@ -15,7 +15,7 @@ THIRD = "1/(s*(s+1)*(s+2))"
 FOURTH = "1/(s*(s+4)*(s^2+4*s+20))"
 
 
-def locus(loop: str) -> symobs.Result:
+def locus(loop: str) -> Any:
     return symobs.root_locus(symobs.StateSpace.from_transfer_function(loop))
 
 
