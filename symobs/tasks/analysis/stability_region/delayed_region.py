@@ -48,10 +48,11 @@ _WHERE = "specification.controller"
 class DelayedLoopResult:
     """What the tasks about a loop with a dead time share: P and N, and what is told of them."""
 
-    plant: StateSpace
-    answer: Mapping[str, Any]
-    written: WrittenTransferFunction
-    gain: str
+    if TYPE_CHECKING:
+        plant: StateSpace
+        answer: Mapping[str, Any]
+        written: Any
+    gain = ""
 
     def claims_of_loop(self) -> Iterator[Claim]:
         """Yield what P and N are."""
@@ -119,14 +120,19 @@ def delayed_loop(
     return plant, written, {"P": opened, "N": moved}
 
 
+class _Region:
+    """The task, which is not that of loops with a dead time alone."""
+
+    task: ClassVar[str] = "stability_region"
+
+
 @dataclass
-class DelayedRegion(DelayedLoopResult, Result):
+class DelayedRegion(DelayedLoopResult, _Region, Result):
     """The gains k for which all roots of P + k N e^{−sT} have negative real part."""
 
     written: WrittenTransferFunction
     gain: str
 
-    task: ClassVar[str] = "stability_region"
     answered_by = ("stable_if",)
 
     def claims(self) -> Iterator[Claim | Statement]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, Self
 
 from symobs.exact.algebraic.dead_time_margins import (
     exact_value,
     interval_around_one,
     landmarks_of,
+    loop_with,
     unstable_after,
     unstable_before,
 )
@@ -25,26 +26,28 @@ from symobs.tasks.analysis.stability_region.delayed_region import (
     tell,
     write_delayed_loop,
 )
-from symobs.tasks.result import Result, page_of
+from symobs.tasks.design.margins.margins import MARGINS, Margins
+from symobs.tasks.result import page_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.exact import Scalar
     from symobs.proof.certificate.claims import Claim
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
-    from symobs.system.transfer_function_text import WrittenTransferFunction
 
 
 @dataclass
-class DelayedMargins(DelayedLoopResult, Result):
+class DelayedMargins(DelayedLoopResult, Margins):
     """The margins of N/P e^{−sT}; none where the closed loop is not stable."""
 
-    written: WrittenTransferFunction
-    gain: str = ""
-
-    task: ClassVar[str] = "margins"
-    answered_by = ("gain_down", "gain_up", "phase_deg")
+    @classmethod
+    def of_loop(cls, plant: StateSpace, controller: object) -> Self:
+        """Return the margins of the loop of a plant with a dead time and a controller; raises `InputError`."""
+        plant, written, loop = delayed_loop(plant, controller, None)
+        assert plant.delay is not None  # noqa: S101 - the caller has looked
+        return cls(plant, "boundary", {**loop, **_margins(loop, plant.delay)}, None, written)
 
     def claims(self) -> Iterator[Claim | Statement]:
         """Yield what P and N are, how many poles are unstable, and the margins."""
@@ -52,9 +55,9 @@ class DelayedMargins(DelayedLoopResult, Result):
         yield Statement(
             "the unstable poles", lambda: "the argument principle, by enclosures" if self.told("counts") else ""
         )
-        if self.is_stable:
-            how = "interval arithmetic"
-            yield Statement("angle, distance and peak", lambda: how if self.told("margins") else "")
+        found = {name: self.answer[name] for name in MARGINS}
+        how = "interval arithmetic"
+        yield Statement("angle, distance and peak", lambda: how if found == _margins(self.answer, self.delay) else "")
 
     @property
     def is_stable(self) -> bool:
@@ -72,28 +75,32 @@ class DelayedMargins(DelayedLoopResult, Result):
         distances = self.distances
         loop = distances.loop
         before, after = unstable_before(loop), unstable_after(loop)
-        found: dict[str, Any] = dict.fromkeys(("gain_down", "gain_up", "phase_deg", "modulus", "peak"))
-        if self.is_stable:
-            low, high = interval_around_one(loop)
-            found |= {"gain_down": exact_value(low), "gain_up": exact_value(high)}
-            found |= {"phase_deg": distances.phase(MARGIN_DIGITS)}
-            found |= {"modulus": distances.modulus(MARGIN_DIGITS), "peak": distances.peak(MARGIN_DIGITS)}
+        found: dict[str, Any] = {name: self.answer[name] for name in MARGINS}
         found |= {"characteristic_function": self.function, "open_loop_polynomial": self.answer["P"]}
         found |= {"open_loop_unstable": before, "closed_loop_unstable": after}
         found["encirclements"] = None if after is None else before - after
         crossings = sorted(loop.decided[1], key=lambda crossing: crossing.low)
         places = [landmarks_of(crossing) for crossing in crossings]
         found["axis_crossings"] = [{name: place[name] for name in ("omega", "value")} for place in places]
-        found["phase_crossover"] = [p["omega"] for p, c in zip(places, crossings, strict=True) if c.side > 0]
+        found["phase_crossover"] = [str(p["omega"]) for p, c in zip(places, crossings, strict=True) if c.side > 0]
         found["gain_crossover"] = [frequency(x).text("x") for x in distances.crossovers]
         found["delay_margin"] = distances.delay_margin(LOCUS_DIGITS)
         return found
 
 
-def delayed_margins(plant: StateSpace, controller: object) -> DelayedMargins:
-    """Return the margins of the loop of a plant with a dead time and a controller; raises `InputError`."""
-    moved, written, loop = delayed_loop(plant, controller, None)
-    return DelayedMargins(moved, "boundary", loop, written)
+def _margins(loop: Mapping[str, Any], delay: Scalar) -> dict[str, Any]:
+    """Return the margins of N/P e^{−sT} by name, None of a loop that is not stable; the slowest pole is not sought."""
+    distances = loop_with(loop["P"], loop["N"], delay)
+    if unstable_after(distances.loop) != 0:
+        return dict.fromkeys(MARGINS)
+    low, high = interval_around_one(distances.loop)
+    found = {"gain_down": exact_value(low), "gain_up": exact_value(high), "phase_deg": distances.phase(MARGIN_DIGITS)}
+    return {
+        **found,
+        "modulus": distances.modulus(MARGIN_DIGITS),
+        "peak": distances.peak(MARGIN_DIGITS),
+        "slowest": None,
+    }
 
 
 @page_of(DelayedMargins)

@@ -225,11 +225,13 @@ def _written(value: Any) -> Any:
 
 def public(value: Any) -> Any:
     """Return an exact number as SymPy has it, a rounded one as a decimal."""
-    from symobs.exact.sympy_bridge.conversion import real_to_sympy  # noqa: PLC0415 - only who asks in Python pays
+    from symobs.exact.sympy_bridge.conversion import real_to_sympy, scalar_to_sympy  # noqa: PLC0415 - Python's face
     from symobs.exact.sympy_bridge.sympy_import import sympy  # noqa: PLC0415
 
     if value == INFINITE:
         return sympy.oo
+    if isinstance(value, Scalar):
+        return scalar_to_sympy(value)
     return real_to_sympy(value) if isinstance(value, RealNumber) else Decimal(value)
 
 
@@ -352,9 +354,9 @@ def margins(
         plant.require("B", "C", task="margins")
         plant = plant.in_digits()
         if plant.delay is not None:
-            from symobs.tasks.design.margins.delayed_margins import delayed_margins  # noqa: PLC0415 - dead times alone
+            from symobs.tasks.design.margins.delayed_margins import DelayedMargins  # noqa: PLC0415 - dead times alone
 
-            return delayed_margins(plant, controller).asked(method)
+            return DelayedMargins.of_loop(plant, controller).asked(method)
         written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
         found: Result = chosen.solve(plant, None, written, loop_of_controller(plant, written))
         return found.asked(method)
