@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from symobs.exact import Scalar
 from symobs.exact.algebraic.dead_time import DelayedLoop
@@ -113,11 +113,17 @@ def delayed_loop(
     names = sorted((opened.names | moved.names | plant.delay.names) - {plant.variable})
     if names:
         message = f"the loop has a dead time and the symbol {names[0]}"
-        raise InputError(message, where=f"symbols.{names[0]}", repair=f"give it a value: [values] {names[0]} = 1")
+        raise InputError(message, where=f"symbols.{names[0]}", repair="write its value in its place")
     if moved.is_zero or opened.degree(plant.variable) <= moved.degree(plant.variable):
         what = "is 0" if moved.is_zero else "is not strictly proper: infinitely many poles lie near a vertical line"
         raise InputError(f"the loop with a dead time {what}", where=_WHERE, repair="give a controller with a pole more")
     return plant, written, {"P": opened, "N": moved}
+
+
+class Parameters(NamedTuple):
+    """The names that a region is one of."""
+
+    parameters: tuple[str, ...]
 
 
 class _Region:
@@ -149,6 +155,11 @@ class DelayedRegion(DelayedLoopResult, _Region, Result):
         return [tuple(map(exact_value, part[:2])) for part in anew] == [
             tuple(map(exact_value, p[:2])) for p in self.intervals
         ]
+
+    @property
+    def question(self) -> Parameters:
+        """What is asked for."""
+        return Parameters((self.gain,))
 
     @property
     def verdict(self) -> str:
