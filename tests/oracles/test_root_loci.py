@@ -1,8 +1,7 @@
-"""Root loci against the numbers of textbooks, and against roots with 50 digits."""
+"""Root loci against roots with 50 digits; `test_classical_loops` has those of textbooks."""
 
 from __future__ import annotations
 
-import tomllib
 from typing import Any
 
 import mpmath
@@ -10,35 +9,6 @@ import numpy as np
 import pytest
 
 import symobs
-from tests.support.paths import ROOT
-
-LOCI = tomllib.loads((ROOT / "tests" / "oracles" / "root_loci.toml").read_text("utf-8"))["loci"]
-
-
-def _near(found: list[Any], printed: list[Any]) -> bool:
-    assert len(found) == len(printed), (found, printed)
-    return all(
-        np.allclose(one[: len(other)], other, rtol=3e-3, atol=5e-3)
-        for one, other in zip(sorted(found), sorted(printed), strict=True)
-    )
-
-
-@pytest.mark.parametrize("locus", LOCI, ids=[each["source"] for each in LOCI])
-def test_the_landmarks_are_those_of_the_book(locus: dict[str, Any]) -> None:
-    found: Any = symobs.root_locus(symobs.StateSpace.from_transfer_function(locus["loop"])).fields
-    branch = [
-        (complex(mpmath.mpmathify(symobs_number(b["s"]))), float(symobs_number(b["k"]).real))
-        for b in found["breakaway"]
-    ]
-    if "breakaway" in locus:
-        assert _near([[s.real, s.imag, k] for s, k in branch], locus["breakaway"])
-    if "crossings" in locus:
-        crossed = [[float(c["k_decimal"]), float(c["omega_decimal"])] for c in found["crossings"]]
-        assert _near(crossed, locus["crossings"])
-    if "departure" in locus:
-        assert _near([[float(each["angle"])] for each in found["departure"]], [[angle] for angle in locus["departure"]])
-    if "centroid" in locus:
-        assert abs(float(found["asymptotes"]["centroid"].fraction()) - locus["centroid"]) < 1e-3
 
 
 def symobs_number(text: Any) -> complex:

@@ -13,7 +13,13 @@ from flint import acb, arb, fmpz_poly
 
 from symobs.exact.algebraic.loop_distances import certain
 from symobs.exact.algebraic.polynomial_roots import roots_of
-from symobs.exact.algebraic.real_algebraic import FIRST_BITS, RealNumber, irreducible_factors, roots_of_scalar
+from symobs.exact.algebraic.real_algebraic import (
+    FIRST_BITS,
+    RealNumber,
+    irreducible_factors,
+    real_roots,
+    roots_of_scalar,
+)
 from symobs.exact.core.polynomial import resultant
 from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
@@ -236,7 +242,9 @@ def gain_on_boundary(x: RealNumber, re: Scalar, square: Scalar) -> RealNumber | 
 
 def frequency(x: RealNumber) -> RealNumber:
     """Return √x of x ≥ 0."""
-    return max(roots_of_scalar(x.minimal_polynomial("x").substitute({"x": Scalar.symbol("y") ** 2}), "y"))
+    below = sum(RealNumber.of(0) < other < x for other in real_roots(x.polynomial))
+    roots = roots_of_scalar(x.minimal_polynomial("x").substitute({"x": Scalar.symbol("y") ** 2}), "y")
+    return [root for root in roots if root.sign >= 0][below]
 
 
 def omega_of(x: RealNumber, *, discrete: bool) -> str:
