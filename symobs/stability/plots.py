@@ -200,15 +200,13 @@ def range_around(values: Iterable[Fraction], *, spread: bool = False) -> Interva
     known = list(values) or [Fraction(0)]
     if spread:
         low, high = min(known, key=float), max(known, key=float)
+        room = (high - low) / 8 or Fraction(1)
     else:
         middle = sorted(known)[len(known) // 2]
         distances = sorted(abs(value - middle) for value in known)
         usual = distances[len(distances) * 2 // 3] or distances[-1] or Fraction(1)
         near = [value for value in known if abs(value - middle) <= _FAR * usual]
         low, high = min(near), max(near)
-    if spread:
-        room = (high - low) / 8 or Fraction(1)
-    else:
         room = max((high - low) * Fraction(3, 5), Fraction(1, 2) if high - low < 1 else Fraction(0), abs(middle) / 5)
     step = _round_step(high - low + 2 * room)
     return _down(low - room, step), -_down(-high - room, step)

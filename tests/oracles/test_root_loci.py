@@ -86,3 +86,21 @@ def test_a_branch_departs_to_the_left_between_poles_of_one_height() -> None:
     """Hold s^4 = -1 - k: the roots leave along the rays that they lie on."""
     found: Any = symobs.root_locus(symobs.StateSpace.from_transfer_function("1/(s^4+1)")).fields
     assert sorted(float(each["angle"]) for each in found["departure"]) == [45, 135]
+
+
+@pytest.mark.parametrize("loop", ["1/(s*(s+a)*(s+b))", "(s+a)/(s*(s+b))", "(s+a)/(s^2+b*s+1)"])
+def test_branch_points_with_letters_are_double_roots(loop: str) -> None:
+    """By SymPy: p + k q and its derivative vanish there, whatever the letters are."""
+    import sympy  # noqa: PLC0415
+
+    plant = symobs.StateSpace.from_transfer_function(loop, symbols={"a": "positive", "b": "positive"})
+    s, a, b = sympy.symbols("s a b")
+    above, below = sympy.fraction(sympy.together(sympy.sympify(loop)))  # noqa: TID251
+    found: Any = symobs.root_locus(plant).fields
+    assert len(found["breakaway"]) == 2
+    for point in found["breakaway"]:
+        place, k = (sympy.sympify(str(point[name]), locals={"a": a, "b": b}) for name in ("s", "k"))  # noqa: TID251
+        moved = below + k * above
+        for expression in (moved, sympy.diff(moved, s)):
+            value = expression.subs(s, place).subs({a: sympy.Rational(7, 3), b: sympy.Rational(3, 11)})
+            assert abs(sympy.N(value, 60)) < 1e-50

@@ -159,7 +159,8 @@ def region_object(result: Any, language: Language) -> dict[str, Any]:
                 "handle": [_near(x, (left, right)), _near(y, (bottom, top))],
             }
         case PoleMap():
-            samples = list(result.fields.get("sample_points", []))
+            region = getattr(result, "region", None)
+            samples = list((region if isinstance(region, StabilityRegion) else result).fields.get("sample_points", []))
             low, high = picture.values
             return found | {
                 "kind": "locus",
@@ -464,10 +465,11 @@ def _page(asked: Request) -> dict[str, Any]:
 
 def _point(asked: Request) -> dict[str, Any]:
     found = _as_given(asked)
-    if found.result.task != "stability_region":
+    region: Any = found.result.region if found.result.task == "root_locus" else found.result
+    if not isinstance(region, StabilityRegion):
         raise InputError("only a stability region has points", where="want", repair='ask for "answer"')
     printer = CardPrinter(found.result, found.problem.convention, language_named(found.problem.language))
-    return {"status": "done", **point_object(found.result, asked.at, printer)}
+    return {"status": "done", **point_object(region, asked.at, printer)}
 
 
 def _view(asked: Request) -> dict[str, Any]:
@@ -475,7 +477,7 @@ def _view(asked: Request) -> dict[str, Any]:
     whole = view_object(found.result, found.problem.specification)
     symbols = found.result.plant.symbols
     whole["symbols"] = {name: symbols.sign(name) for name in sorted(symbols.signs)}
-    if found.result.task == "stability_region":
+    if "region" in found.result.panels:
         whole["region"] = region_object(_there(asked).result, language_named(found.problem.language))
     return {"status": "done", "verdict": found.result.verdict, "view": whole}
 

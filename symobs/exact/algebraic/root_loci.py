@@ -126,6 +126,23 @@ def derivative_in(p: Scalar, variable: str) -> Scalar:
     return found
 
 
+def quotient_at(p: Scalar, q: Scalar, factor: Scalar, variable: str) -> tuple[Scalar, Scalar]:
+    """Return u, v with p/q = u + v s at the roots s of a quadratic factor, where q does not vanish: its norm is divided by."""
+    lead, linear, constant = factor.coefficients(variable)
+    c1, c0 = linear / lead, constant / lead
+    (p0, p1), (q0, q1) = (_modulo_square(part, c1, c0, variable) for part in (p, q))
+    norm = q0 * q0 - q0 * q1 * c1 + q1 * q1 * c0
+    return (p0 * q0 - p0 * q1 * c1 + p1 * q1 * c0) / norm, (p1 * q0 - p0 * q1) / norm
+
+
+def _modulo_square(polynomial: Scalar, c1: Scalar, c0: Scalar, variable: str) -> tuple[Scalar, Scalar]:
+    """Return a, b with p = a + b s modulo s² + c₁ s + c₀."""
+    a, b = Scalar.of(0), Scalar.of(0)
+    for coefficient in polynomial.coefficients(variable):
+        a, b = coefficient - b * c0, a - b * c1
+    return a, b
+
+
 def gain_at(root: Root, p: Scalar, q: Scalar, variable: str) -> RealNumber | None:
     """Return k with p + k q = 0 at a root, where that is a real number."""
     above, below, factor = (whole(part, variable) for part in (p, q, root.factor))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Scalar
 from symobs.exact.algebraic.dead_time import DelayedLoop
@@ -27,7 +27,7 @@ from symobs.proof.certificate.claims import Statement
 from symobs.system.specification import read_names
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import factored_form, given
-from symobs.tasks.analysis.stability_region.loop_polynomials import loop_polynomials, monic
+from symobs.tasks.analysis.stability_region.loop_polynomials import Parameters, loop_polynomials, monic
 from symobs.tasks.result import Result, holds, page_of
 
 if TYPE_CHECKING:
@@ -118,12 +118,6 @@ def delayed_loop(
         what = "is 0" if moved.is_zero else "is not strictly proper: infinitely many poles lie near a vertical line"
         raise InputError(f"the loop with a dead time {what}", where=_WHERE, repair="give a controller with a pole more")
     return plant, written, {"P": opened, "N": moved}
-
-
-class Parameters(NamedTuple):
-    """The names that a region is one of."""
-
-    parameters: tuple[str, ...]
 
 
 class _Region:
