@@ -367,7 +367,8 @@ def _there(asked: Request) -> Solved:
 def _require_at(asked: Request) -> None:
     """Raise an error for values of names that are no symbols, that cannot be read, or are of another sign."""
     table = asked.data.get("symbols")
-    declared = Symbols.of(table) if isinstance(table, Mapping) else Symbols.of({})
+    given = dict(table) if isinstance(table, Mapping) else {}
+    declared = Symbols.of(given | ({"k": "nonnegative"} if asked.data.get("task") == "root_locus" else {}))
     errors: list[SymobsError] = []
     for name, text in asked.at.items():
         where = f"at.{name}"
