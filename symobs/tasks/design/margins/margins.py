@@ -19,6 +19,7 @@ from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
 from symobs.formula.tree import Decimals, Environment
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
+from symobs.ground.later import Later
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation.builder import Builder, predicate
 from symobs.stability.frequency_plots import bode_picture, nyquist_picture
@@ -45,6 +46,8 @@ if TYPE_CHECKING:
     from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
 
 
+#: The margins of loops with a dead time are of the type below, and imported where there is one.
+_dead_time = Later("symobs.tasks.design.margins.delayed_margins")
 #: The margins, as they are called.
 MARGINS = ("gain_down", "gain_up", "phase_deg", "modulus", "peak", "slowest")
 #: The polynomial of the closed loop, the matrix of what is added to the plant, and where the loop is cut.
@@ -354,9 +357,8 @@ def margins(
         plant.require("B", "C", task="margins")
         plant = plant.in_digits()
         if plant.delay is not None:
-            from symobs.tasks.design.margins.delayed_margins import DelayedMargins  # noqa: PLC0415 - dead times alone
-
-            return DelayedMargins.of_loop(plant, controller).asked(method)
+            delayed: Result = _dead_time.DelayedMargins.of_loop(plant, controller)
+            return delayed.asked(method)
         written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
         found: Result = chosen.solve(plant, None, written, loop_of_controller(plant, written))
         return found.asked(method)
