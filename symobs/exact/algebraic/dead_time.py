@@ -11,7 +11,7 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import cached_property, cmp_to_key
 from itertools import pairwise
-from math import ceil, factorial, floor, isqrt
+from math import ceil, factorial, floor, isqrt, log2, pi
 from typing import TYPE_CHECKING, Any
 
 from flint import acb, arb, fmpz_poly
@@ -73,14 +73,14 @@ class DelayedCrossing:
 
     def closed_form(self) -> tuple[Scalar, Scalar] | None:
         """Return ω and k exactly where ω = 0, or where the phase does not change but for the dead time: they contain π."""
-        loop, pi = self.loop, Scalar.symbol(PI)
+        loop = self.loop
         if self.is_at_zero:
             return Scalar.of(0), Scalar.of(-Fraction(int(loop.P[0]), int(loop.N[0])))
         if loop.R and loop.I:
             return None
         with Precision(FIRST_BITS):  # ωT is a multiple of π/2, an even one where I = 0
             quarters = round(float((self.omega(FIRST_BITS) * fraction_ball(loop.T) / arb.pi()).mid()) * 2)
-        omega = pi * Scalar.of(Fraction(quarters, 2) / loop.T)
+        omega = Scalar.symbol(PI) * Scalar.of(Fraction(quarters, 2) / loop.T)
         turned = _polynomial(loop.real, omega) if not loop.I else omega * _polynomial(loop.imaginary, omega)
         return omega, -_polynomial(loop.square, omega) / (turned * (1 if quarters % 4 < 2 else -1))
 
@@ -106,6 +106,7 @@ class DelayedLoop:
         while size[0] == 0:  # R = 0 at ω = 0: both have the factor x
             rate, size = rate // x, size // x
         self.rate, self.size = rate, size
+        self.narrow: dict[tuple[Fraction, Fraction], tuple[Fraction, Fraction]] = {}  # what was found of a root so far
         self.turning = self.T.denominator * rate - self.T.numerator * size
 
     # -- the real condition on the axis --------------------------------------------------------------------------------
@@ -140,11 +141,14 @@ class DelayedLoop:
         """Return an interval of length 2^−bits around the root of the condition in an interval with one root."""
         if low == high:
             return low, high
+        known = self.narrow.setdefault((low, high), (low, high))
         first, unit = self.sign(low), Fraction(1, 2**bits)
-        while high - low > unit:
-            middle = (low + high) / 2
-            low, high = (middle, high) if self.sign(middle) == first else (low, middle)
-        return low, high
+        low_now, high_now = known
+        while high_now - low_now > unit:
+            middle = (low_now + high_now) / 2
+            low_now, high_now = (middle, high_now) if self.sign(middle) == first else (low_now, middle)
+        self.narrow[low, high] = low_now, high_now
+        return low_now, high_now
 
     @cached_property
     def turns(self) -> list[tuple[Fraction, Fraction]]:
@@ -213,18 +217,22 @@ class DelayedLoop:
         return sorted(found, key=cmp_to_key(_order_of))
 
     @cached_property
-    def decided(self) -> tuple[Fraction, list[DelayedCrossing]]:
-        """Return a gain above which |k| is unstable on either side, and the crossings below it.
+    def early(self) -> Fraction:
+        """Return a bound of |k| at crossings where the phase need not fall: above it roots cross to the right alone."""
+        top = self.turns[-1][1] if self.turns else Fraction(0)
+        found = [DelayedCrossing(self, low, high, 0) for low, high in (self.roots(top) if top else [])]
+        found += [DelayedCrossing(self, Fraction(0), Fraction(0), 0)] if self.N[0] != 0 and self.P[0] != 0 else []
+        return max([Fraction(0), *(_upper(crossing.k) for crossing in found)])
 
-        Above the largest |k| of a crossing where the phase need not fall, roots cross to the right alone.
-        """
-        top, gain = self.turns[-1][1] if self.turns else Fraction(0), Fraction(1)
-        early = [DelayedCrossing(self, low, high, 0) for low, high in (self.roots(top) if top else [])]
-        early += [DelayedCrossing(self, Fraction(0), Fraction(0), 0)] if self.N[0] != 0 and self.P[0] != 0 else []
-        for crossing in early:
-            gain = max(gain, Fraction(ceil(_upper(crossing.k)) + 1))
+    @cached_property
+    def decided(self) -> tuple[Fraction, list[DelayedCrossing]]:
+        """Return a gain above which |k| is unstable on either side, and the crossings below it."""
+        place = complex(0, pi / float(self.T))  # near a crossing
+        below = abs(_near(self.N, place))
+        guess = 1.2 * abs(_near(self.P, place)) / below if below else 1.0
+        gain = _rounded_up(float(self.early) * 65 / 64 if self.early else guess)
         while not (self.unstable(gain) and self.unstable(-gain)):
-            gain *= 2
+            gain *= Fraction(3, 2)
             if gain > 2**200:
                 raise TooLarge("the gains of the loop")
         return gain, self.crossings(gain)
@@ -237,18 +245,19 @@ class DelayedLoop:
         edges: list[Edge] = [-gain, *crossings, gain]
         if on_and_right(self.P)[0] or signs in {"positive", "negative"}:  # k = 0 is no stable gain, or not allowed
             edges.insert(sum(bool(ball_of(edge, FIRST_BITS) < 0) for edge in edges), Fraction(0))
+        parts = [(low, high, between(low, high)) for low, high in pairwise(edges)]
+        upwards = [part for part in parts if part[2] >= 0 and signs not in {"negative", "nonpositive"}]
+        downwards = [part for part in parts[::-1] if part[2] < 0 and signs not in {"positive", "nonnegative"}]
+        return [*self._stable(downwards)[::-1], *self._stable(upwards)]
+
+    def _stable(self, parts: list[tuple[Edge, Edge, Fraction]]) -> list[tuple[Edge, Edge, Fraction]]:
+        """Return those with stable roots, by growing |k|: above the early crossings the first unstable one is the last."""
         found = []
-        for low, high in pairwise(edges):
-            sample = between(low, high)
-            allowed = (
-                sample >= 0
-                if signs in {"positive", "nonnegative"}
-                else sample <= 0
-                if signs in {"negative", "nonpositive"}
-                else True
-            )
-            if allowed and not self.unstable(sample):
-                found.append((low, high, sample))
+        for part in parts:
+            if not self.unstable(part[2]):
+                found.append(part)
+            elif abs(part[2]) > self.early:
+                break
         return found
 
     def unstable(self, k: Fraction) -> int:
@@ -347,6 +356,21 @@ def at(polynomial: fmpz_poly, point: Any) -> Any:
     for coefficient in reversed(polynomial.coeffs()):
         value = value * point + int(coefficient)
     return value
+
+
+def _near(polynomial: fmpz_poly, place: complex) -> complex:
+    """Return a value in floating point."""
+    value = 0j
+    for coefficient in reversed(polynomial.coeffs()):
+        value = value * place + float(int(coefficient))
+    return value
+
+
+def _rounded_up(value: float) -> Fraction:
+    """Return a short fraction above a number, 1/64 or more of its size."""
+    found = Fraction(value).limit_denominator(10**6) if value > 0 else Fraction(0)
+    unit = Fraction(2) ** (floor(log2(value)) - 6) if value > 0 else Fraction(1)
+    return (found // unit + 1) * unit
 
 
 def _polynomial(polynomial: fmpz_poly, omega: Scalar) -> Scalar:

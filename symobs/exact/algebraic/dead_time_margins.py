@@ -239,6 +239,7 @@ def _certain(value: Callable[[int], arb], digits: int) -> str:
     return found
 
 
+@lru_cache(maxsize=64)
 def told_of_dead_time(kind: str, opened: Scalar, moved: Scalar, delay: Scalar, sign: str) -> list[dict[str, str]]:
     """Return what a sentence of a kind tells of the loop, by rounded numbers; `sign` is that of the gain k."""
     distances = loop_with(opened, moved, delay)
