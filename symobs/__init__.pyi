@@ -105,6 +105,7 @@ def canonical_form(
     T: _Matrix | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _CanonicalFormResult:
     """Return the controllable, observable or modal canonical form, x̄ = T x, or the plant in given coordinates."""
 
@@ -127,6 +128,7 @@ def characteristic_polynomial(
     *,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _CharacteristicPolynomialResult:
     """Return χ(s) = det(sI − A), its factors and its roots with multiplicity."""
 
@@ -185,6 +187,7 @@ def compensator(
     choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _CompensatorResult:
     """Design the observer-based compensator U = −F(s) Y, with an observer of full order n or of minimal order n − p."""
 
@@ -209,6 +212,7 @@ def controllability(
     *,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _ControllabilityResult:
     """Decide whether (A, B) is controllable: rank [B, AB, …, Aⁿ⁻¹B] = n."""
 
@@ -237,6 +241,7 @@ def decomposition(
     *,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _DecompositionResult:
     """Split a plant into four parts: reached and seen, reached and hidden, not reached and seen, neither."""
 
@@ -260,6 +265,7 @@ def detectability(
     meaning: str = "asymptotic",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _DetectabilityResult:
     """Decide whether some L makes A − LC stable: whether all unobservable modes are stable."""
 
@@ -300,6 +306,7 @@ def disturbance_observer(
     choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _DisturbanceObserverResult:
     """Estimate state and disturbance of ẋ = A x + B u + E d, d = V w, ẇ = S w, by the observer of (x, w)."""
 
@@ -331,6 +338,7 @@ def dual(
     sign: int = 1,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _DualResult:
     """Return the dual plant (± Aᵀ, Cᵀ, Bᵀ, Dᵀ) and the ranks that are equal by duality."""
 
@@ -351,6 +359,7 @@ def equilibria(
     *,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _EquilibriaResult:
     """Return all x, u with f(x, u) = 0 (f(x, u) = x in discrete time), and whether the linearisation at each is stable."""
 
@@ -382,6 +391,7 @@ def feedforward(
     choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _FeedforwardResult:
     """Design F in u = −K x + F v, or −K x̂ + F v, so that y = v at rest:  F = [(C − DK)(−A + BK)⁻¹B + D]⁻¹."""
 
@@ -406,6 +416,7 @@ def gramian(
     of: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _GramianResult:
     """Return the Gramian W = ∫₀ᵀ e^{Aᵀt} Cᵀ C e^{At} dt (of = "controllability": ∫₀ᵀ e^{At} B Bᵀ e^{Aᵀt} dt)."""
 
@@ -425,6 +436,7 @@ def initial_state(
     horizon: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _InitialStateResult:
     """Return the initial state x₀ of an output y(t) under an input u(t), y = C (e^{At} x₀ + x_f) + D u, or that none exists."""
 
@@ -446,6 +458,7 @@ def initial_state_covariance(
     horizon: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _InitialStateCovarianceResult:
     """Return the covariance Σ of the estimate x̂₀ = W⁻¹ ∫ e^{Aᵀt} Cᵀ y dt under white input noise Q and output noise R."""
 
@@ -483,6 +496,7 @@ def integral_action(
     choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _IntegralActionResult:
     """Let y follow constant references by u = −K x + k_I ξ, ξ' = r − y, with n + p given poles."""
 
@@ -515,6 +529,7 @@ def kalman(
     N: _Matrix | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _KalmanResult:
     """Return the observer gain with the smallest covariance of the error: the steady-state Kalman filter."""
 
@@ -542,6 +557,7 @@ def lqr(
     N: _Matrix | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _LqrResult:
     """Return the state feedback u = −K x that minimises ∫ xᵀQx + 2xᵀNu + uᵀRu dt, in discrete time Σ."""
 
@@ -570,6 +586,7 @@ def lyapunov(
     P: _Number | _Matrix | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _LyapunovResult:
     """Solve Lyapunov's equation AᵀP + PA = −Q, in discrete time AᵀPA − P = −Q, for a symmetric P."""
 
@@ -579,7 +596,7 @@ class _MarginsResult(_Margins):
     @property
     def gain_down(self) -> Expr: ...
     @property
-    def gain_up(self) -> Expr: ...
+    def gain_up(self) -> Expr | str: ...
     @property
     def phase_deg(self) -> str: ...
     @property
@@ -589,7 +606,7 @@ class _MarginsResult(_Margins):
     @property
     def slowest(self) -> Expr | str: ...
     @property
-    def closed_loop_polynomial(self) -> Expr: ...
+    def characteristic_function(self) -> str: ...
     @property
     def open_loop_polynomial(self) -> Expr: ...
     @property
@@ -606,6 +623,8 @@ class _MarginsResult(_Margins):
     def gain_crossover(self) -> tuple[str, ...]: ...
     @property
     def delay_margin(self) -> str: ...
+    @property
+    def closed_loop_polynomial(self) -> Expr: ...
 
 @overload
 def margins(design: _StateFeedbackResult | _ObserverResult | _CompensatorResult | _LqrResult | _KalmanResult) -> _MarginsResult: ...
@@ -625,6 +644,7 @@ def margins(
     controller: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _MarginsResult: ...
 
 class _MatrixExponentialResult(_MatrixExponential):
@@ -638,6 +658,7 @@ def matrix_exponential(
     *,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _MatrixExponentialResult:
     """Return e^{At} as a real matrix of exponentials, cosines, sines, cosh, sinh and powers of t; Aᵏ in discrete time."""
 
@@ -661,6 +682,7 @@ def minimum_energy_input(
     horizon: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _MinimumEnergyInputResult:
     """Return the input of least energy ∫ uᵀu dt (Σ uᵀu) from x₀ to x_f: u = Bᵀ e^{Aᵀ(T−t)} W⁻¹ (x_f − e^{AT} x₀)."""
 
@@ -685,6 +707,7 @@ def observability(
     *,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _ObservabilityResult:
     """Decide whether (C, A) is observable: rank [C; CA; …; CAⁿ⁻¹] = n."""
 
@@ -723,6 +746,7 @@ def observer(
     choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _ObserverResult:
     """Design the full-order observer  x̂' = (A − LC) x̂ + (B − LD) u + L y  with det(sI − A + LC) = φ(s)."""
 
@@ -764,6 +788,7 @@ def output_regulation(
     choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _OutputRegulationResult:
     """Let y follow r = Q w, ẇ = S w, in spite of a disturbance E w, by u = −K x + (Γ + KΠ) w, ΠS = AΠ + BΓ + E, CΠ + DΓ = Q."""
 
@@ -785,6 +810,7 @@ def pbh(
     of: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _PbhResult:
     """Test observability (or controllability) eigenvalue by eigenvalue: rank [A − λI; C] = n for all λ."""
 
@@ -812,6 +838,7 @@ def pole_advice(
     overshoot: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _PoleAdviceResult:
     """Advise observer poles: at the stable zeros of the plant, the rest on a circle or as a dominant pair."""
 
@@ -848,6 +875,7 @@ def reduced_order_observer(
     choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _ReducedOrderObserverResult:
     """Design the observer of order n − p  ż = F z + G u + H y,  x̂ = M [y − D u; z],  with det(sI − F) = φ(s)."""
 
@@ -868,6 +896,7 @@ def response(
     at_time: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _ResponseResult:
     """Return the response x(t) = e^{At} x₀ + ∫₀ᵗ e^{A(t−s)} B u(s) ds and y = C x + D u to an initial state and an input."""
 
@@ -900,6 +929,7 @@ def root_locus(
     gain_sign: int = 1,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _RootLocusResult:
     """Return the root locus of 1 + k C(s)G(s): the roots of p + k q for k from 0, with landmarks that are exact."""
 
@@ -943,6 +973,7 @@ def stability_region(
     radius: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _StabilityRegionResult:
     """Find the parameters for which all roots of χ are stable: exact inequalities, intervals, cells of the plane."""
 
@@ -966,6 +997,7 @@ def stabilizability(
     meaning: str = "asymptotic",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _StabilizabilityResult:
     """Decide whether some K makes A − BK stable: whether all uncontrollable modes are stable."""
 
@@ -1000,6 +1032,7 @@ def state_feedback(
     choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _StateFeedbackResult:
     """Design state feedback  u = −K x  with det(sI − A + BK) = φ(s)."""
 
@@ -1031,6 +1064,7 @@ def time_varying_observability(
     input: _Number | _Matrix | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _TimeVaryingObservabilityResult:
     """Decide whether ẋ = A(t) x, y = C(t) x is observable, by N₀ = C, N_{k+1} = N_k A + N_k'."""
 
@@ -1063,6 +1097,7 @@ def tracking(
     choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _TrackingResult:
     """Track ẋ_d = A_d x_d by u = K (x_d − x̂) − K_d x_d, where A_d − A + BK_d = 0 has a solution."""
 
@@ -1081,6 +1116,7 @@ def transfer_function(
     *,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _TransferFunctionResult:
     """Return P(s) = C (sI − A)⁻¹ B + D in lowest terms, with its poles and zeros."""
 
@@ -1123,6 +1159,7 @@ def unknown_input_observer(
     choose: str = "auto",
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _UnknownInputObserverResult:
     """Estimate the state of ẋ = A x + B u + E d irrespective of d by  ż = F z + B_u u + B_y y,  x̂ = z + H (y − D u)."""
 
@@ -1150,5 +1187,6 @@ def zero_order_hold(
     controller: _Number | None = None,
     method: str = "auto",
     floats: str | None = None,
+    pade: int | str | None = None,
 ) -> _ZeroOrderHoldResult:
     """Return the plant behind a zero-order hold, x_{k+1} = A_d x_k + B_d u_k, with A_d = e^{AT}, B_d = ∫₀ᵀ e^{At} B dt."""

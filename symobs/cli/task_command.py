@@ -28,6 +28,8 @@ PLANT_OPTIONS = {
     "transfer_function": 'instead of A, B, C, D: "1/(s*(s + 1))"',
     "realisation": "of a transfer function: controllable (default), observable or modal",
     "dt": "0: continuous (default); true, or the period: discrete",
+    "delay": "a dead time at the input",
+    "pade": "1 to 4: the order of its Padé approximation",
 }
 
 

@@ -148,6 +148,7 @@ class NyquistPicture:
     window: tuple[Interval, Interval]
     discrete: bool = False
     indented: bool = False
+    delay: Fraction = Fraction(0)
 
 
 @dataclass
@@ -164,6 +165,7 @@ class BodePicture:
     phases: tuple[Fraction, ...]
     window: tuple[Interval, Interval]
     discrete: bool = False
+    delay: Fraction = Fraction(0)
 
 
 #: What stands on a page, and is checked with it.

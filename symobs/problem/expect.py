@@ -17,7 +17,8 @@ from symobs.formula.expression import parse_matrix, parse_poles, parse_scalar
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import CertificateRejected, InputError, OpenEquality, ProblemErrors, SymobsError
 from symobs.problem.agreement import agrees, functions_agree
-from symobs.system.conditions import Condition, vanishing_factors
+from symobs.problem.landmarks import LANDMARKS, landmarks_agree
+from symobs.system.conditions import Condition, sign_of, vanishing_factors
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
@@ -276,9 +277,11 @@ def conditions_agree(
     found: Iterable[Any], expected: Iterable[Any], names: Any, where: str, signs: Mapping[str, str]
 ) -> bool:
     """Return whether two conjunctions of relations are proved equivalent."""
-    ours = {each for entry in found for each in _factor_by_factor(relation(str(entry), names, where), signs)}
+    texts = [_DIGITS.sub(lambda number: f"({Fraction(number[0])})", str(entry)) for entry in found]
+    ours = {each for text in texts for each in _factor_by_factor(relation(text, names, where), signs)}
     theirs = {each for entry in expected for each in _factor_by_factor(relation(entry, names, where), signs)}
     if any(decimals_in(value) for value, _ in theirs):
+        theirs = {(v, op) for v, op in theirs if decimals_in(v) or op != ">" or sign_of(v, signs) != "positive"}
         pairs = [(mine, other) for other in theirs for mine in ours if relations_agree(other, mine)]
         return {mine for mine, _ in pairs} == ours and {other for _, other in pairs} == theirs
     return ours == theirs or (_implies(ours, theirs, signs) and _implies(theirs, ours, signs))
@@ -306,6 +309,8 @@ def _implies(
     )
 
 
+#: A number in certain digits among the conditions found, an end without a closed form: what is expected rounds it.
+_DIGITS = re.compile(r"\d+\.\d+")
 _NOT_RATIONAL = re.compile(r"sqrt|CRootOf|oo")
 _FUNCTION = re.compile(r"\b(exp|log|a?sin|a?cos|atan|sinh|cosh)\b|\bt\b")
 _WORD = re.compile(r"[A-Za-z]+")
@@ -497,6 +502,8 @@ def met(result: Answered, name: str, expected: Any, where: str) -> bool:
         return parse_scalar(expected, names, where=where) == Scalar.of(found)
     if found is None or isinstance(found, (str, bool)):
         return isinstance(expected, type(found)) and bool(found == expected)
+    if isinstance(found, (list, tuple)) and name in LANDMARKS:
+        return landmarks_agree(name, list(found), expected, names, where)
     if isinstance(found, (list, tuple)):
         wanted = expected if isinstance(expected, list) else [expected]
         if name == "kernel" and found and wanted:

@@ -11,6 +11,7 @@ from symobs.problem.fields import ANY_TABLE, MARKING, TEXT, by_name, list_of, ta
 from symobs.problem.file_tables import Errors, nearest, report_unknown, table_of
 from symobs.system import StateSpace, Symbols, read_scalar
 from symobs.system.conditions import SIGNS
+from symobs.system.dead_time import ORDERS
 from symobs.system.linearize import linearize, without_equilibrium
 from symobs.system.reading import read_time
 from symobs.system.specification import CHOICES, KINDS
@@ -80,7 +81,7 @@ _PRINTED = {
 PRINTED = list_of(table(_PRINTED), 200)
 MOTION = ("coordinates", "equations", "kinetic", "potential", "forces")
 NONLINEAR = ("f", "h", "states", "inputs", "equilibrium", *MOTION)
-PLANT = ("A", "B", "C", "D", "transfer_function", "realisation", *NONLINEAR, "dt")
+PLANT = ("A", "B", "C", "D", "transfer_function", "realisation", *NONLINEAR, "dt", "delay", "pade")
 #: A compensator has poles for each of its halves; a task that is one half reads them where nothing else is said of it.
 _HALVES: dict[tuple[str, ...], str] = {("K",): "control", ("L",): "observer"}
 
@@ -177,6 +178,8 @@ def schema() -> dict[str, Any]:
                 "type": "object",
                 "additionalProperties": number_or_text,
             },
+            "delay": {"description": 'a dead time at the input: "1/2"', **number_or_text},
+            "pade": {"description": "the order of its Padé approximation", "enum": list(ORDERS)},
             "dt": {
                 "description": "0: continuous; true, or the period: discrete",
                 "type": ["number", "boolean", "string"],
@@ -276,9 +279,13 @@ def plant_of(
     report_unknown(table, PLANT, "plant", errors, repair_of)
     given = [name for name in "ABCD" if name in table]
     nonlinear = {name: table[name] for name in NONLINEAR if name in table}
+    lag = {name: table[name] for name in ("delay", "pade") if name in table}
     forms = [*given[:1], *(name for name in ("transfer_function",) if name in table), *list(nonlinear)[:1]]
     if len(forms) > 1:
         errors.note(f"both {forms[-1]} and {forms[0]} are given", "plant", "keep one of them")
+    elif nonlinear and "delay" in table:
+        repair = "give the matrices A, B, C of its linearisation"
+        errors.note("a dead time is given for a nonlinear plant", "plant.delay", repair)
     elif nonlinear:
         with errors:
             return (without_equilibrium if moving else linearize)(**nonlinear, dt=dt, symbols=symbols)
@@ -286,8 +293,10 @@ def plant_of(
         errors.note("there is nothing to realise", "plant.realisation", "it belongs to transfer_function: leave it out")
     elif "transfer_function" in table:
         with errors:
-            kind = table.get("realisation")
-            return StateSpace.from_transfer_function(table["transfer_function"], dt, symbols=symbols, realisation=kind)
+            written = table["transfer_function"], dt
+            return StateSpace.from_transfer_function(
+                *written, symbols=symbols, realisation=table.get("realisation"), **lag
+            )
     elif optional and not given and "polynomial" in (specification := table_of(data, "specification", errors)):
         with errors:
             known = symbols.naming(specification.get("parameters"), "specification.parameters")
@@ -297,12 +306,21 @@ def plant_of(
     else:
         with errors:
             B, C, D = (table.get(name) for name in "BCD")
-            return StateSpace(table["A"], B, C, D, dt, symbols=symbols)
+            return StateSpace(table["A"], B, C, D, dt, symbols=symbols, **lag)
         others = Errors()
         for name in given:
             read_cells(table[name], symbols.with_time(), f"plant.{name}", others)
         errors.add_elsewhere(others)
     return None
+
+
+def with_order_in_plant(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a file with the order of a Padé approximation in [plant], where it may stand in [specification], too."""
+    specification, plant = data.get("specification"), data.get("plant")
+    if not (isinstance(specification, Mapping) and isinstance(plant, Mapping) and "pade" in specification):
+        return data
+    left = {name: value for name, value in specification.items() if name != "pade"}
+    return {**data, "specification": left, "plant": {"pade": specification["pade"], **plant}}
 
 
 def read_cells(value: object, symbols: Symbols, where: str, errors: Errors) -> None:

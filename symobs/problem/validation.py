@@ -30,6 +30,7 @@ from symobs.problem.schema import (
     plant_of,
     read_cells,
     repair_of,
+    with_order_in_plant,
 )
 from symobs.system import StateSpace, Symbols, read_matrix, read_scalar
 from symobs.system.reading import read_time
@@ -151,7 +152,7 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     `folder` is where a convention of the user's own may lie.  Raises `ProblemErrors` with every error found.
     """
     _refuse_other_kinds(data)
-    errors = Errors()
+    data, errors = with_order_in_plant(data), Errors()
     report_unknown(data, TOP, "", errors, repair_of)
     title, source, text = (text_of(data, name, errors) for name in ("title", "source", "text"))
     ids = list_of(TEXT).read(data.get("id", []), "id", errors)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from cmath import exp, phase, pi
 from fractions import Fraction
-from math import degrees, log10, tan
+from math import ceil, degrees, log10, tan
 from typing import TYPE_CHECKING
 
 from symobs.exact.algebraic.root_location import complex_roots
@@ -24,10 +24,15 @@ if TYPE_CHECKING:
 _NODES, _ARC = 240, 40
 #: A root so near to the boundary stands on it; a curve is drawn up to so many times the largest crossing of the real axis.
 _ON, _SEEN = 1e-9, 2.2
+#: Turns that a dead time makes in a picture, nodes for each of them, and how many nodes there are at most.
+_TURNS, _NODES_OF_TURN, _MOST_NODES = 5, 48, 1200
+_NONE = Fraction(0)
 
 
-def nyquist_picture(N: Scalar, P: Scalar, variable: str, crossings: Sequence[float]) -> NyquistPicture:
-    """Return the Nyquist picture; `crossings` are the values of the loop on the real axis."""
+def nyquist_picture(
+    N: Scalar, P: Scalar, variable: str, crossings: Sequence[float], delay: Fraction = _NONE
+) -> NyquistPicture:
+    """Return the Nyquist picture; `crossings` are the values of the loop on the real axis, `delay` its dead time."""
     discrete = variable == "z"
     above, below = (_numbers(each, variable) for each in (N, P))
     poles, zeros, closed = (_roots(each, variable) for each in (P, N, P + N))
@@ -39,7 +44,7 @@ def nyquist_picture(N: Scalar, P: Scalar, variable: str, crossings: Sequence[flo
     on = sorted((p for p in poles if _outside(p, discrete=discrete) is None and p.imag >= -_ON), key=along)
     on = [p for k, p in enumerate(on) if not k or abs(p - on[k - 1]) > _ON]
     radius = {p: _radius(p, [*poles, *zeros], closed, (above, below), size * _SEEN, discrete=discrete) for p in on}
-    boundary = _boundary([*poles, *zeros, *closed], discrete=discrete)
+    boundary = _boundary([*poles, *zeros, *closed], discrete=discrete, delay=delay)
     contour = [place for place in boundary if all(abs(place - p) > radius[p] for p in on)]
     for p in on:
         turned = p if discrete else 1
@@ -49,26 +54,26 @@ def nyquist_picture(N: Scalar, P: Scalar, variable: str, crossings: Sequence[flo
         at = sum(along(place) <= along(p) for place in contour)
         contour[at:at] = arc
     places = [_rational(place) for place in contour]
-    values = [_rational(_at(above, place) / _at(below, place)) for place in contour]
+    values = [_rational(_at(above, place) / _at(below, place) * exp(-place * float(delay))) for place in contour]
     seen = [v for v in values if max(map(abs, v)) <= 3 * _SEEN * size] + [(Fraction(-1), Fraction(0))]
     ys = [y * sign for _, y in seen for sign in (1, -1)]
     window = range_around([x for x, _ in seen], spread=True), range_around(ys, spread=True)
-    return NyquistPicture(tuple(places), tuple(values), window, discrete, bool(on))
+    return NyquistPicture(tuple(places), tuple(values), window, discrete, bool(on), delay)
 
 
-def bode_picture(N: Scalar, P: Scalar, variable: str) -> BodePicture:
-    """Return the Bode picture."""
+def bode_picture(N: Scalar, P: Scalar, variable: str, delay: Fraction = _NONE) -> BodePicture:
+    """Return the Bode picture of a loop, with a dead time where there is one."""
     discrete = variable == "z"
     above, below = (_numbers(each, variable) for each in (N, P))
     roots = [root for each in (N, P, P + N) for root in _roots(each, variable)]
     contour: list[Place] = []
     across, levels, phases = list[float](), list[float](), list[float]()
-    for place in _boundary(roots, discrete=discrete)[1:]:
+    for place in _boundary(roots, discrete=discrete, delay=delay)[1:]:
         omega = phase(place) if discrete else place.imag
         bottom = _at(below, place)
         if not bottom or not omega > 0 or not (value := _at(above, place) / bottom):
             continue
-        angle = degrees(phase(value))
+        angle = degrees(phase(value * exp(-place * float(delay))))
         if phases:
             angle += 360 * round((phases[-1] - angle) / 360)
         elif angle > 90 + 1e-6:
@@ -80,11 +85,14 @@ def bode_picture(N: Scalar, P: Scalar, variable: str) -> BodePicture:
     inner = sorted(levels)[len(levels) // 50 : len(levels) - len(levels) // 50]
     window = (Fraction(across[0]), Fraction(across[-1])), range_around([Fraction(x) for x in (*inner, 0)], spread=True)
     over, modulus, turned = (tuple(map(Fraction, each)) for each in (across, levels, phases))
-    return BodePicture(tuple(contour), over, modulus, turned, window, discrete)
+    return BodePicture(tuple(contour), over, modulus, turned, window, discrete, delay)
 
 
-def _boundary(roots: Sequence[complex], *, discrete: bool) -> list[complex]:
-    """Return places on the upper half of the boundary, two decades beyond the roots, or around the circle."""
+def _boundary(roots: Sequence[complex], *, discrete: bool, delay: Fraction) -> list[complex]:
+    """Return places on the upper half of the boundary, two decades beyond the roots, or around the circle.
+
+    With a dead time they end after some turns, or beyond the roots, and lie near enough to one another for each turn.
+    """
     if discrete:
         angles = [pi * (10 ** (-3 * (1 - k / _NODES))) for k in range(_NODES)]
         angles += [pi * k / _NODES for k in range(1, _NODES)]
@@ -99,6 +107,12 @@ def _boundary(roots: Sequence[complex], *, discrete: bool) -> list[complex]:
     near = [root.imag for root in roots if root.imag > _ON]
     beside = [y * (1 + sign * 10**-k) for y in near for sign in (1, -1) for k in (1, 1.3, 1.6, 2, 2.5, 3)]
     grid = [10 ** (low + (high - low) * k / _NODES) for k in range(_NODES + 1)]
+    if delay:
+        lag = float(delay)
+        end = max(2 * pi * _TURNS / lag, 3 * max(sizes))
+        steps = min(ceil(end * lag * _NODES_OF_TURN / (2 * pi)), _MOST_NODES)
+        grid = [*(x for x in grid if x < end), *(end * k / steps for k in range(1, steps + 1))]
+        beside = [x for x in beside if x < end]
     return [complex(0, 0), *(complex(0, y) for y in sorted({*grid, *beside}))]
 
 

@@ -197,15 +197,16 @@ def _near_ends(cylinder: Cylinder, close: int = _CLOSE) -> list[Fraction]:
 
 def range_around(values: Iterable[Fraction], *, spread: bool = False) -> Interval:
     """Return a range around most values, with `spread` around all of them, with round ends."""
-    known = sorted(values) or [Fraction(0)]
-    middle = known[len(known) // 2]
-    distances = sorted(abs(value - middle) for value in known)
-    usual = distances[len(distances) * 2 // 3] or distances[-1] or Fraction(1)
-    near = known if spread else [value for value in known if abs(value - middle) <= _FAR * usual]
-    low, high = near[0], near[-1]
+    known = list(values) or [Fraction(0)]
     if spread:
+        low, high = min(known, key=float), max(known, key=float)
         room = (high - low) / 8 or Fraction(1)
     else:
+        middle = sorted(known)[len(known) // 2]
+        distances = sorted(abs(value - middle) for value in known)
+        usual = distances[len(distances) * 2 // 3] or distances[-1] or Fraction(1)
+        near = [value for value in known if abs(value - middle) <= _FAR * usual]
+        low, high = min(near), max(near)
         room = max((high - low) * Fraction(3, 5), Fraction(1, 2) if high - low < 1 else Fraction(0), abs(middle) / 5)
     step = _round_step(high - low + 2 * room)
     return _down(low - room, step), -_down(-high - room, step)
@@ -604,10 +605,9 @@ def _roots(polynomial: Scalar, variable: str, name: str, value: Fraction) -> lis
 
 
 def _paired(before: Sequence[Place], after: Sequence[Place]) -> list[Place]:
-    """Return the roots in the order of the previous ones, nearest pairs first."""
-    distances = sorted(
-        ((x - a) ** 2 + (y - b) ** 2, i, j) for i, (x, y) in enumerate(before) for j, (a, b) in enumerate(after)
-    )
+    """Return the roots in the order of the previous ones, nearest pairs first, to the accuracy of binary numbers."""
+    first, second = ([complex(float(x), float(y)) for x, y in row] for row in (before, after))
+    distances = sorted((abs(one - other), i, j) for i, one in enumerate(first) for j, other in enumerate(second))
     chosen: dict[int, int] = {}
     for _, i, j in distances:
         if i not in chosen and j not in chosen.values():

@@ -16,6 +16,7 @@ from symobs.exact.floating.sampled import nearest_double
 from symobs.exact.numerals.written_digits import in_digits
 from symobs.ground.errors import InputError, SymobsError, raise_all
 from symobs.system.conditions import Condition, sign_of
+from symobs.system.dead_time import delayed, lagging, read_delay, read_order
 from symobs.system.findings import Findings
 from symobs.system.reading import (
     Continuous,
@@ -157,14 +158,24 @@ class StateSpace:
     dt       0 continuous time; True or a positive value: discrete time
     symbols  name → sign ("positive", …, "real"); when given, no other names exist
     floats   "decimal" reads floats as their shortest decimals, and the page says so; otherwise they are refused
+    delay    a dead time at the input, "1/2"; in discrete time a multiple of dt, or so many periods where dt is True
+    pade     1 to 4, the order of the Padé approximation of the dead time by which tasks go that need one
 
     The name t is the time: a plant with t in a matrix is time-varying, ẋ = A(t) x + B(t) u, and need not declare it.
     `P * Q`, `P + Q` and `P.feedback(Q)` connect plants as python-control does; Q may be a gain.
     Raises `ShapeMismatch`, `InexactInput` (floats), `ExpressionError`, `UnknownName`; all of them are `InputError`.
     """
 
-    #: Whether irrational data were rounded.
+    #: Whether irrational data were rounded, and whether it is a case of another plant.
     is_rounded = False
+    is_stratum = False
+    #: The dead time at the input, None without one; in discrete time it is realised, by `delays` of one period each.
+    delay: Scalar | None = None
+    delays = 0
+    #: The order of the Padé approximation that tasks take which need one.
+    pade: int | None = None
+    #: The dead time that a Padé approximation of this order stands for.
+    approximates: tuple[Scalar, int] | None = None
     #: What is positive where the plant is: an equilibrium may be there for some parameters alone.
     positive: tuple[Scalar, ...] = ()
 
@@ -178,6 +189,8 @@ class StateSpace:
         *,
         symbols: Mapping[str, Any] | Symbols | None = None,
         floats: str | None = None,
+        delay: object = None,
+        pade: object = None,
         transfer_function: WrittenTransferFunction | WrittenTransferMatrix | None = None,
     ) -> None:
         """Read the matrices and check that they fit."""
@@ -218,7 +231,6 @@ class StateSpace:
         self.is_in_decimals = any(has_decimals(value) for value in (A, B, C, D))
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
-        self.is_stratum = False
         #: The plant with parameters whose values these are: what was a case of its results is a result, no refusal.
         self.general: StateSpace | None = None
         given = [part for part in parts.values() if part is not None]
@@ -232,6 +244,7 @@ class StateSpace:
             raise InputError(message, where="plant", repair="give the parameter another name")
         there = self.restricted(relations)
         self.matrices, self.equations = there.matrices, there.equations
+        self._let_lag(delay, pade)
 
     @classmethod
     def from_transfer_function(
@@ -242,6 +255,8 @@ class StateSpace:
         symbols: Mapping[str, Any] | Symbols | None = None,
         floats: str | None = None,
         realisation: str | None = None,
+        delay: object = None,
+        pade: object = None,
     ) -> StateSpace:
         """Return the controllable canonical realisation of a proper rational function of s (z in discrete time).
 
@@ -263,8 +278,13 @@ class StateSpace:
         exact = read_floats(transfer_function, floats, where)
         known = known.seen(exact, time.variable)
         written = read_written(exact, known, time.variable, where, realisation)
+        lag = read_delay(delay, known, time)
+        steps = lag if isinstance(time, Discrete) else None
+        written = written if steps is None else lagging(written, steps)
         A, B, C, D = written.realised(where, known.signs)
-        plant = cls(A, B, C, D, dt, symbols=known, transfer_function=written)
+        lag = lag if steps is None else None
+        plant = cls(A, B, C, D, dt, symbols=known, delay=lag, pade=pade, transfer_function=written)
+        plant.delays = 0 if steps is None else int(steps.fraction())
         plant.is_from_floats, plant.is_in_decimals = exact is not transfer_function, has_decimals(exact)
         return plant
 
@@ -342,6 +362,21 @@ class StateSpace:
             raise InputError(message, where="plant", repair="give the parameter another name")
         self.time = TimeVarying()
 
+    def _let_lag(self, delay: object, pade: object) -> None:
+        """Take a dead time at the input; raises `InputError` for a plant that varies in time or has no input."""
+        lag = read_delay(delay, self.symbols, self.time)
+        if lag is None:
+            return
+        if self.is_time_varying or not self.matrices.has_input:
+            what = "varies in time" if self.is_time_varying else "has no input"
+            repair = "leave it out" if self.is_time_varying else "give B, or leave it out"
+            raise InputError(f"a dead time is given, and the plant {what}", where="plant.delay", repair=repair)
+        if self.is_discrete:
+            self.delays = int(lag.fraction())
+            self.matrices = delayed(self.matrices, self.delays)
+        else:
+            self.delay, self.pade = lag, read_order(pade)
+
     def in_time(self) -> StateSpace:
         """Return the same plant as one whose matrices may contain t; raises `InputError` in discrete time."""
         if self.is_time_varying:
@@ -386,7 +421,10 @@ class StateSpace:
         there = m.has_input, m.has_output, m.has_input and m.has_output
         B, C, D = [part if is_there else None for part, is_there in zip(others, there, strict=True)]
         period = getattr(self.time, "period", None)
-        plant = StateSpace(A, B, C, D, self.dt if period is None else str(substitute(period, values)), symbols=symbols)
+        lag = None if self.delay is None else substitute(self.delay, values)
+        dt = self.dt if period is None else str(substitute(period, values))
+        plant = StateSpace(A, B, C, D, dt, symbols=symbols, delay=lag, pade=self.pade)
+        plant.delays = self.delays
         images = [substitute(equation, values).numerator for equation in self.equations]
         nonzero = [substitute(value, values).numerator for value in self.nonzero]
         if any(value.is_zero for value in nonzero) or any(i.is_constant and not i.is_zero for i in images):
@@ -605,7 +643,7 @@ class StateSpace:
     @property
     def _value(self) -> tuple[object, ...]:
         signs = {name: sign for name, sign in self.symbols.signs.items() if sign != "real"}
-        given = self.origin, self.polynomial, self.nonlinear, self.is_from_floats, self.is_in_decimals
+        given = self.origin, self.polynomial, self.nonlinear, self.is_from_floats, self.is_in_decimals, self.delay
         return (self.matrices, self.time, signs, self.symbols.latex, given, self.equations, self.nonzero)
 
     def _repr_latex_(self) -> str:

@@ -332,6 +332,11 @@ def _system(plant: Any) -> Realisation:
     if plant.is_time_varying or not all(map(is_identity, plant.equations)):
         message = "a plant that varies in time, or that is a case of another, cannot be connected"
         raise InputError(message, where="plant", repair="connect plants with constant matrices")
+    if plant.delay is not None:
+        message = "a plant with a dead time cannot be connected"
+        raise InputError(
+            message, where="plant.delay", repair="connect the plants without it, and give it to the connection"
+        )
     m = plant.matrices
     return Realisation(m.A, m.B, m.C, m.D)
 

@@ -37,6 +37,7 @@ IN_WORDS = {
     "angle, distance and peak",
     "the ends of the gains around 1",
     "the slowest root",
+    "the unstable poles",
     "the digits are those of the stabilising solution",
     "the factors are monic",
     "the loop is asymptotically stable",

@@ -844,6 +844,24 @@ def test_the_region_is_drawn_for_the_value_of_another_letter(opened: Callable[..
     assert live.page.get_attribute(".point:not(.old) .verdict", "data-verdict") == "stable"
 
 
+def test_the_gain_moves_the_roots_along_their_locus(opened: Callable[..., Opened]) -> None:
+    live = opened("v=1&task=root_locus&transfer_function=1/(s*(s+1)*(s+2))&symbols=k:positive")
+    dots = "[...document.querySelectorAll('.map .root')].map((e) => e.getAttribute('cx'))"
+    verdict = "() => document.querySelector('.point:not(.old) .verdict')?.dataset.verdict"
+    live.put("1", "at.k", rest=False)
+    live.at_rest()
+    first = live.page.evaluate(dots)
+    assert len(first) == 3
+    assert live.page.evaluate(verdict) == "stable"
+    live.put("7", "at.k", rest=False)  # above the crossing at k = 6
+    live.at_rest()
+    assert live.page.evaluate(verdict) == "unstable"
+    assert live.page.evaluate(dots) != first
+    live.put("6", "at.k", rest=False)
+    live.at_rest()
+    assert live.page.evaluate(verdict) == "boundary"
+
+
 def test_a_case_is_set_exactly(opened: Callable[..., Opened]) -> None:
     live = opened(CASES)
     live.page.get_by_role("button", name="c = 1", exact=True).click()

@@ -402,11 +402,17 @@ class World:
         yield "words", (step.names, [repr(finding) for finding in step.findings])
 
     def untrue_frequencies(self, picture: NyquistPicture | BodePicture) -> Iterator[str]:
-        """Yield the places where (χ_cl − χ_o)/χ_o, found in floating point, is not what a picture has there."""
-        closed, opened = (self.scalar_of(Letter(name)) for name in ("chi_cl", "chi_o"))
-        assert closed is not None
+        """Yield where (χ_cl − χ_o)/χ_o, or q/χ_o e^{−sT}, found in floating point, is not what a picture has there."""
+        moved, opened, delay = (self.scalar_of(Letter(name)) for name in ("q", "chi_o", "T_t"))
+        if delay is None:
+            moved = self.scalar_of(Letter("chi_cl"))
+        assert moved is not None
         assert opened is not None
-        lists = [[float(c.fraction()) for c in p.coefficients(self.variable)] for p in (closed, opened)]
+        lag = 0.0 if delay is None else float(delay.fraction())
+        if float(picture.delay) != lag:
+            yield "delay"
+            return
+        lists = [[float(c.fraction()) for c in p.coefficients(self.variable)] for p in (moved, opened)]
         (left, right), (bottom, top) = picture.window
         places = [complex(float(x), float(y)) for x, y in picture.contour]
         far = [abs(s) - 1 if self.is_discrete else s.real for s in places]
@@ -418,8 +424,8 @@ class World:
         for k, s in enumerate(places):
             value = (
                 reduce(lambda sum_, c: sum_ * s + c, lists[0], 0j) / reduce(lambda sum_, c: sum_ * s + c, lists[1], 0j)
-                - 1
-            )
+                - (1 if delay is None else 0)
+            ) * cmath.exp(-s * lag)
             if isinstance(picture, NyquistPicture):
                 u, v = picture.values[k]
                 missed = abs(value - complex(float(u), float(v)))

@@ -29,6 +29,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, ProblemErrors, SymobsError
 from symobs.problem import parse
 from symobs.problem.expect import factored_table
+from symobs.problem.landmarks import without_landmarks
 
 # Definitions as students write them: NAME = value, chains of equal values, several of them on a line.
 
@@ -364,7 +365,8 @@ def _of_lines(text: str, where: str, own: Sequence[str]) -> Answer:
     """
     kept, said = _without_sentences(_lines(text, where))
     kept, exceptions = _without_exceptions(kept)
-    values: dict[str, Any] = {}
+    kept, landmarks = without_landmarks(kept)
+    values: dict[str, Any] = {**landmarks}
     steps: list[Step] = []
     conditions: list[str] = []
     errors: list[SymobsError] = []

@@ -13,7 +13,7 @@ from symobs.applications.audit.auditor import EquationAuditor, printed_entries
 from symobs.applications.audit.differences import Reason, WrongEntries, as_matrix, wrong_entries
 from symobs.applications.audit.evaluation import Misfit, common, equal, value_of
 from symobs.applications.audit.slips import SearchBudget
-from symobs.applications.checking.answers import Answer, Step, as_value, has_decimals, read_like
+from symobs.applications.checking.answers import Answer, Step, as_conditions, as_value, has_decimals, read_like
 from symobs.applications.checking.handwriting import EIGENVALUES, in_letters, named_entries
 from symobs.applications.checking.parts import OF_THE_PLANT, exists, field_called, is_of_time, part_of_task
 from symobs.applications.checking.regions import (
@@ -510,6 +510,9 @@ def _of_conditions(state: _Derivation, step: Step) -> Line:
     names = names_of(view)
     known = None if names is None else {**dict.fromkeys(view.result.question.parameters, "real"), **names}
     try:
+        if not hasattr(view.result, "critical"):  # with a dead time its ends are no algebraic numbers
+            same = met(view, "stable_if", as_conditions(step.relation), step.where)
+            return Line(step.where, step.relation, "true" if same else "undecided")
         region, marking = cast("StabilityRegion", view.result), state.problem.marking
         if marking.decimals == "accept" and has_decimals(step.relation):
             union = rounded_on(region, step.relation, known, marking.digits, step.where)

@@ -34,6 +34,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import CertificateRejected, InputError, NotShown, ProblemErrors, SymobsError, UnknownName
 from symobs.problem.agreement import DIFFERENT, EQUAL, OPEN, in_form_of
 from symobs.problem.expect import digits_of, found_in, is_digits, met, names_of
+from symobs.problem.landmarks import LANDMARKS
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
@@ -317,7 +318,10 @@ def _judged(task: _Task, part: Judged) -> Judged:
         return _in_digits(task, part)
     if not exists(task.right, name):
         return replace(part, reason=f"there is no {part.letter} here")
-    if (task.view.task, name) == ("stability_region", "stable_if"):
+    is_transcendental = (task.view.task, name) == ("stability_region", "stable_if") and not hasattr(
+        task.right, "critical"
+    )
+    if (task.view.task, name) == ("stability_region", "stable_if") and not is_transcendental:
         return _region(task, part)
     right = task.right.fields.get(name)
     if name == "verdict" or isinstance(right, bool) or (isinstance(right, str) and right in VERDICTS):
@@ -340,7 +344,7 @@ def _judged(task: _Task, part: Judged) -> Judged:
         if name == "F" and not task.gains and not task.wrong and closes_the_loop(task.right, part.value):
             return replace(part, verdict="right", hints=("another compensator with the same closed-loop polynomial",))
         rounded = _is_right_rounding(task, part, right)
-        if rounded and task.marking.decimals == "accept":
+        if rounded and (task.marking.decimals == "accept" or part.name in LANDMARKS or is_transcendental):
             return replace(part, verdict="right", hints=("rounded",))
         if isinstance(right, Matrix) and has_decimal_commas(given, task.names, right.shape):
             raise two_readings()

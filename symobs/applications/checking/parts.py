@@ -31,7 +31,7 @@ def as_asked(view: ResultInConvention, letter: str, value: Any) -> Any:
     if isinstance(value, str) and (inside := value_of(letter, value)) != value:
         value = as_value(inside)
     name = view.standard(letter)[0]
-    if name == "conditions":
+    if name == "conditions" or (name == "stable_if" and not hasattr(view.result, "critical")):
         return as_conditions(value)
     if isinstance(value, str):
         value = in_letters(value, *known_names(view))

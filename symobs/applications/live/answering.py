@@ -159,7 +159,8 @@ def region_object(result: Any, language: Language) -> dict[str, Any]:
                 "handle": [_near(x, (left, right)), _near(y, (bottom, top))],
             }
         case PoleMap():
-            samples = list(result.fields.get("sample_points", []))
+            region = getattr(result, "region", None)
+            samples = list((region if isinstance(region, StabilityRegion) else result).fields.get("sample_points", []))
             low, high = picture.values
             return found | {
                 "kind": "locus",
@@ -366,7 +367,8 @@ def _there(asked: Request) -> Solved:
 def _require_at(asked: Request) -> None:
     """Raise an error for values of names that are no symbols, that cannot be read, or are of another sign."""
     table = asked.data.get("symbols")
-    declared = Symbols.of(table) if isinstance(table, Mapping) else Symbols.of({})
+    given = dict(table) if isinstance(table, Mapping) else {}
+    declared = Symbols.of(given | ({"k": "nonnegative"} if asked.data.get("task") == "root_locus" else {}))
     errors: list[SymobsError] = []
     for name, text in asked.at.items():
         where = f"at.{name}"
@@ -464,10 +466,11 @@ def _page(asked: Request) -> dict[str, Any]:
 
 def _point(asked: Request) -> dict[str, Any]:
     found = _as_given(asked)
-    if found.result.task != "stability_region":
+    region: Any = found.result.region if found.result.task == "root_locus" else found.result
+    if not isinstance(region, StabilityRegion):
         raise InputError("only a stability region has points", where="want", repair='ask for "answer"')
     printer = CardPrinter(found.result, found.problem.convention, language_named(found.problem.language))
-    return {"status": "done", **point_object(found.result, asked.at, printer)}
+    return {"status": "done", **point_object(region, asked.at, printer)}
 
 
 def _view(asked: Request) -> dict[str, Any]:
@@ -475,7 +478,7 @@ def _view(asked: Request) -> dict[str, Any]:
     whole = view_object(found.result, found.problem.specification)
     symbols = found.result.plant.symbols
     whole["symbols"] = {name: symbols.sign(name) for name in sorted(symbols.signs)}
-    if found.result.task == "stability_region":
+    if "region" in found.result.panels:
         whole["region"] = region_object(_there(asked).result, language_named(found.problem.language))
     return {"status": "done", "verdict": found.result.verdict, "view": whole}
 

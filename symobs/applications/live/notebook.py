@@ -102,6 +102,8 @@ def _plant_data(plant: StateSpace) -> dict[str, Any]:
     table: dict[str, Any] = {name: _rows(value) for name, value in given.items() if value is not None}
     if plant.is_discrete:
         table["dt"] = plant.dt if isinstance(plant.dt, bool) else str(plant.dt)
+    if plant.delay is not None:
+        table |= {"delay": str(plant.delay)} | ({} if plant.pade is None else {"pade": str(plant.pade)})
     return {"plant": table, "symbols": signs(plant)}
 
 

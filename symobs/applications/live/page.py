@@ -79,10 +79,10 @@ def python_of(data: Mapping[str, Any], task: str) -> str:
     """Return the same design as a program; without the file's convention, in which Python does not speak."""
     plant, specification = data.get("plant", {}), data.get("specification", {})
     declared = data.get("symbols", {})
-    given = [f"{name}={plant[name]!r}" for name in ("A", "B", "C", "D", "dt") if name in plant]
+    given = [f"{name}={plant[name]!r}" for name in ("A", "B", "C", "D", "dt", "delay", "pade") if name in plant]
     symbols = [f"symbols={dict(declared)!r}"] if declared else []
     if "transfer_function" in plant:
-        rest = [f"dt={plant['dt']!r}"] if "dt" in plant else []
+        rest = [each for each in given if each.startswith(("dt=", "delay=", "pade="))]
         made = f"symobs.StateSpace.from_transfer_function({', '.join([repr(plant['transfer_function']), *rest, *symbols])})"
     else:
         made = f"symobs.StateSpace({', '.join([*given, *symbols])})"

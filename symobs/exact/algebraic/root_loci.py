@@ -13,7 +13,13 @@ from flint import acb, arb, fmpz_poly
 
 from symobs.exact.algebraic.loop_distances import certain
 from symobs.exact.algebraic.polynomial_roots import roots_of
-from symobs.exact.algebraic.real_algebraic import FIRST_BITS, RealNumber, irreducible_factors, roots_of_scalar
+from symobs.exact.algebraic.real_algebraic import (
+    FIRST_BITS,
+    RealNumber,
+    irreducible_factors,
+    real_roots,
+    roots_of_scalar,
+)
 from symobs.exact.core.polynomial import resultant
 from symobs.exact.core.ring import Precision
 from symobs.exact.core.scalar import Scalar
@@ -68,7 +74,7 @@ def _at(polynomial: fmpz_poly, place: acb) -> acb:
     return value
 
 
-def _places(root: Root, bits: int) -> acb:
+def enclosed(root: Root, bits: int) -> acb:
     """Return an enclosure of a root, numbered as SymPy does: real ones first, ascending, then pairs by real part."""
     factor = whole(root.factor, root.variable)
     with Precision(bits):
@@ -120,6 +126,23 @@ def derivative_in(p: Scalar, variable: str) -> Scalar:
     return found
 
 
+def quotient_at(p: Scalar, q: Scalar, factor: Scalar, variable: str) -> tuple[Scalar, Scalar]:
+    """Return u, v with p/q = u + v s at the roots s of a quadratic factor, where q does not vanish: its norm is divided by."""
+    lead, linear, constant = factor.coefficients(variable)
+    c1, c0 = linear / lead, constant / lead
+    (p0, p1), (q0, q1) = (_modulo_square(part, c1, c0, variable) for part in (p, q))
+    norm = q0 * q0 - q0 * q1 * c1 + q1 * q1 * c0
+    return (p0 * q0 - p0 * q1 * c1 + p1 * q1 * c0) / norm, (p1 * q0 - p0 * q1) / norm
+
+
+def _modulo_square(polynomial: Scalar, c1: Scalar, c0: Scalar, variable: str) -> tuple[Scalar, Scalar]:
+    """Return a, b with p = a + b s modulo s² + c₁ s + c₀."""
+    a, b = Scalar.of(0), Scalar.of(0)
+    for coefficient in polynomial.coefficients(variable):
+        a, b = coefficient - b * c0, a - b * c1
+    return a, b
+
+
 def gain_at(root: Root, p: Scalar, q: Scalar, variable: str) -> RealNumber | None:
     """Return k with p + k q = 0 at a root, where that is a real number."""
     above, below, factor = (whole(part, variable) for part in (p, q, root.factor))
@@ -133,7 +156,7 @@ def gain_at(root: Root, p: Scalar, q: Scalar, variable: str) -> RealNumber | Non
     bits = FIRST_BITS
     while True:
         with Precision(bits):
-            place = _places(root, bits)
+            place = enclosed(root, bits)
             value = -_at(above, place) / arb_of(scale, bits) * arb_of(other, bits) / _at(below, place)
             if value.is_finite():
                 near = []
@@ -147,8 +170,8 @@ def gain_at(root: Root, p: Scalar, q: Scalar, variable: str) -> RealNumber | Non
 
 
 def _parts(root: Root) -> tuple[str, str]:
-    real = certain(lambda bits: _places(root, bits).real, LOCUS_DIGITS)
-    imaginary = certain(lambda bits: _places(root, bits).imag, LOCUS_DIGITS)
+    real = certain(lambda bits: enclosed(root, bits).real, LOCUS_DIGITS)
+    imaginary = certain(lambda bits: enclosed(root, bits).imag, LOCUS_DIGITS)
     return real or "", imaginary or ""
 
 
@@ -156,7 +179,7 @@ def _upper(root: Root) -> bool:
     """Return whether the imaginary part is not negative."""
     bits = FIRST_BITS
     while True:
-        place = _places(root, bits)
+        place = enclosed(root, bits)
         if place.imag == 0 or place.imag > 0:
             return True
         if place.imag < 0:
@@ -236,7 +259,9 @@ def gain_on_boundary(x: RealNumber, re: Scalar, square: Scalar) -> RealNumber | 
 
 def frequency(x: RealNumber) -> RealNumber:
     """Return √x of x ≥ 0."""
-    return max(roots_of_scalar(x.minimal_polynomial("x").substitute({"x": Scalar.symbol("y") ** 2}), "y"))
+    below = sum(RealNumber.of(0) < other < x for other in real_roots(x.polynomial))
+    roots = roots_of_scalar(x.minimal_polynomial("x").substitute({"x": Scalar.symbol("y") ** 2}), "y")
+    return [root for root in roots if root.sign >= 0][below]
 
 
 def omega_of(x: RealNumber, *, discrete: bool) -> str:
@@ -310,7 +335,7 @@ def leads_negatively(q: Scalar, variable: str) -> bool:
 def _is_complex(root: Root) -> bool:
     bits = FIRST_BITS
     while True:
-        place = _places(root, bits)
+        place = enclosed(root, bits)
         if place.imag == 0:
             return False
         if place.imag > 0 or place.imag < 0:
@@ -320,13 +345,13 @@ def _is_complex(root: Root) -> bool:
 
 def _angle(root: Root, roots: Sequence[Root], others: Sequence[Root], *, start: int, order: int) -> str:
     def total(bits: int) -> arb:
-        here = _places(root, bits)
+        here = enclosed(root, bits)
         angle = arb(180 * start)
         for each in others:
-            angle += _argument(here - _places(each, bits)) * 180 / arb.pi()
+            angle += _argument(here - enclosed(each, bits)) * 180 / arb.pi()
         for each in roots:
             if each != root:
-                angle -= _argument(here - _places(each, bits)) * 180 / arb.pi()
+                angle -= _argument(here - enclosed(each, bits)) * 180 / arb.pi()
         angle /= order
         turns = round(float(angle.mid()) / 360)
         angle -= 360 * turns

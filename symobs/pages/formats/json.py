@@ -165,6 +165,10 @@ def _plant_object(plant: StateSpace) -> dict[str, Any]:
             data["rates"] = {named(name): name for name in given.states if named(name) != name}
     dt = plant.dt if isinstance(plant.dt, int) else str(plant.dt)
     data |= {"rounded_to": DATA_DIGITS} if plant.is_rounded else {}
+    data |= {} if plant.delay is None else {"delay": to_json(plant.delay)}
+    if plant.approximates is not None:
+        delay, order = plant.approximates
+        data["approximates"] = {"delay": to_json(delay), "pade": order}
     return {**data, "dt": dt, "symbols": signs(plant, [plant.polynomial])}
 
 

@@ -5,7 +5,7 @@ The points of a picture are rational and lie near what they stand for; how near 
 
 from __future__ import annotations
 
-from cmath import phase
+from cmath import exp, phase
 from fractions import Fraction
 from functools import lru_cache
 from itertools import chain, dropwhile, islice, pairwise
@@ -155,7 +155,10 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
         return
     if isinstance(picture, (NyquistPicture, BodePicture)):
         loop = as_scalar(evaluate(subject, environment, Exact(environment)))
-        yield from faults_of_frequency(picture, loop, environment.variable, discrete=discrete)
+        if picture.delay == as_scalar(environment.values.get("T_t", Scalar.of(0))).fraction():
+            yield from faults_of_frequency(picture, loop, environment.variable, discrete=discrete)
+        else:
+            yield "the dead time"
         return
     numbers = dict(picture.drawn_for)
     for name, value in numbers.items():
@@ -194,6 +197,8 @@ def faults_of_frequency(
     slack = Fraction(1, 1 << 40)
     along = [phase(complex(*map(float, s))) % tau if discrete else s[1] for s in picture.contour]
     near, pairs = least * _NEAR_POLE, [(shifted(above, s)[0], shifted(below, s)[0]) for s in picture.contour]
+    if picture.delay:
+        pairs = [(_lagging(n, s, picture.delay), p) for (n, p), s in zip(pairs, picture.contour, strict=True)]
     beside = [_square(n) > _square(p) for size, (n, p) in zip(sizes, pairs, strict=True) if size > slack]  # near a pole
     is_along = along == sorted(along) and min(sizes) >= -slack and all(beside)
     if picture.discrete != discrete or least <= 0 or not is_along or (is_bode and beside):
@@ -217,6 +222,12 @@ def faults_of_frequency(
             yield f"the value {written((u, v))}"
     if not within((Fraction(-1), Fraction(0)), picture.window):
         yield "-1 in the window"
+
+
+def _lagging(value: Place, place: Place, delay: Fraction) -> Place:
+    """Return a value times e^{−sT}, to within the accuracy of binary numbers."""
+    found = complex(*map(float, value)) * exp(-complex(*map(float, place)) * float(delay))
+    return Fraction(found.real), Fraction(found.imag)
 
 
 def _axes(picture: RegionPicture | LinePicture) -> tuple[str, ...]:

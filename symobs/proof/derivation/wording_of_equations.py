@@ -5,7 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.exact import EIGENVALUE, Matrix, Scalar, rank
+from symobs.exact import EIGENVALUE, Matrix, Scalar, rank, transfer
+from symobs.exact.algebraic.dead_time_margins import WORDS_OF_DEAD_TIME, pade_error, told_of_dead_time
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop
 from symobs.exact.algebraic.nyquist import told_of
 from symobs.exact.algebraic.root_loci import landmarks
@@ -21,6 +22,7 @@ from symobs.formula.tree import (
     Quotient,
     Relation,
     Roots,
+    SymbolList,
     evaluate,
     letters,
 )
@@ -205,6 +207,27 @@ def has_nyquist(said: SentenceContext, kind: str, closed: str, opened: str) -> b
     told = {n: as_scalar(x.value).fraction() if isinstance(x, Decimals) else x for n, x in said.slots.items()}
     right = told_of(kind, first, second, here.variable)
     return told in [{n: t if kind == "counts" else Fraction(t) for n, t in each.items()} for each in right]
+
+
+def has_dead_time(said: SentenceContext, kind: str, moved: str, opened: str, delay: str) -> bool:
+    """Return whether the counts or the digits of a kind are told of the loop k N/P e^{−sT}."""
+    here, slots = said.environment, dict(said.slots)
+    P, N, T = (as_scalar(evaluate(Letter(name), here, Exact(here))) for name in (opened, moved, delay))
+    gain = slots.pop("gain", None)
+    sign = here.signs.get(gain.names[0], "real") if isinstance(gain, SymbolList) else "real"
+    told = {n: as_scalar(x.value).fraction() if isinstance(x, Decimals) else x for n, x in slots.items()}
+    right = told_of_dead_time(kind, P, N, T, sign)
+    return told in [{n: t if n in WORDS_OF_DEAD_TIME else Fraction(t) for n, t in each.items()} for each in right]
+
+
+def misses_phase(said: SentenceContext, delay: str) -> bool:
+    """Return whether the error of a Padé approximation is told at a crossover of the plant, which has it at its input."""
+    here = said.environment
+    A, B, C = (evaluate(Letter(name), here, Exact(here)) for name in "ABC")
+    found = transfer(A, B, C, as_scalar(here.values.get("D", Scalar.of(0))), here.variable)
+    right = pade_error(*found, as_scalar(evaluate(Letter(delay), here, Exact(here))), int(str(said.slots["order"])))
+    told = {n: as_scalar(x.value).fraction() for n, x in said.slots.items() if isinstance(x, Decimals)}
+    return told in [{n: Fraction(t) for n, t in each.items()} for each in right]
 
 
 def is_on_locus(said: SentenceContext, kind: str, opened: str, moved: str) -> bool:

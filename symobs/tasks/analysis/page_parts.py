@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from itertools import accumulate
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -16,7 +17,9 @@ from symobs.exact import (
     product_of,
     root_of_pole,
     roots_of,
+    transfer,
 )
+from symobs.exact.algebraic.dead_time_margins import pade_error
 from symobs.exact.core.generators import NotWritten, exponentials_in, symbols_named
 from symobs.exact.numerals.written_digits import DATA_DIGITS
 from symobs.formula.tree import (
@@ -194,6 +197,7 @@ def given(
             page.environment = page.environment.extended_by(signals={"y": output.formula})
         page.given(*relations)
         _hold_to_letters(page, by)
+        _state_dead_time(page)
         if plant.is_from_floats:
             page.remark("from_floats")
         if plant.is_rounded:
@@ -207,6 +211,24 @@ def given(
         for name, desired_polynomial in desired:
             if desired_polynomial is not None:
                 _asked(page, name, desired_polynomial)
+
+
+def _state_dead_time(page: Builder) -> None:
+    """State the dead time at the input, or what stands for it."""
+    plant = page.plant
+    if plant.delay is not None:
+        page.remark("dead_time", time=relation(page.set("T_t", plant.delay), plant.delay))
+    if plant.delays:
+        page.remark("dead_time_steps", number=str(plant.delays))
+    if plant.approximates is None:
+        return
+    delay, order = plant.approximates
+    page.remark("dead_time_pade", time=relation(page.set("T_p", delay), delay), order=str(order))
+    if plant.inputs == plant.outputs == 1 and not {*plant.matrices.symbols, *delay.names}:
+        m = plant.matrices
+        for told in pade_error(*transfer(m.A, m.B, m.C, m.D[0, 0], plant.variable), delay, order):
+            slots = {name: page.term(Decimals(Scalar.of(Fraction(text)))) for name, text in told.items()}
+            page.remark("dead_time_pade_error", order=str(order), **slots)
 
 
 def _as_given(page: Builder, matrix: Matrix) -> Term:

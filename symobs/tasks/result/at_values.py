@@ -102,7 +102,9 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
     elif plant.origin is not None:
         kind, origin = getattr(plant.written, "realisation", None), substitute(plant.origin, values)
         if plant.variable in symbols_in(origin):  # where all poles cancel, the states stay and the function has none
-            written = StateSpace.from_transfer_function(origin, there.dt, symbols=there.symbols, realisation=kind)
+            written = StateSpace.from_transfer_function(
+                origin, there.dt, symbols=there.symbols, realisation=kind, delay=there.delay, pade=there.pade
+            )
             there = written if written.matrices == there.matrices else there
     elif plant.nonlinear is not None:
         there.nonlinear = plant.nonlinear.moved(values)

@@ -12,6 +12,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError, SymobsError, Undecided
 from symobs.proof.certificate.claims import BEYOND_LIMITS
 from symobs.system import StateSpace, as_plant, read_floats
+from symobs.system.dead_time import approximated, read_order
 from symobs.system.specification import as_typed
 from symobs.tasks.result.result import Result
 from symobs.tasks.result.writers import discover, import_named
@@ -102,7 +103,7 @@ def _of_plants(function: Callback) -> Callback:
     words = [name for name, kind in kinds.items() if kind == "Name"]
 
     @wraps(function)
-    def reading(*arguments: Any, floats: str | None = None, **keywords: Any) -> Result:
+    def reading(*arguments: Any, floats: str | None = None, pade: object = None, **keywords: Any) -> Result:
         if arguments and (only or arguments[0] is not None):
             arguments = (_asked_anew(as_plant(arguments[0], only=only, floats=floats)), *arguments[1:])
         elif "plant" in keywords and (only or keywords["plant"] is not None):
@@ -113,6 +114,9 @@ def _of_plants(function: Callback) -> Callback:
                 raise InputError(message, where=f"specification.{name}", repair="write it in quotes")
         came = {name: value for name, value in keywords.items() if name != "plant" and value is not None}
         plant = arguments[0] if arguments else keywords.get("plant")
+        if isinstance(plant, StateSpace) and plant.delay is not None:
+            plant = _with_dead_time(plant, pade, function.__name__, came)
+            arguments, keywords = (plant, *arguments[1:]), {n: v for n, v in keywords.items() if n != "plant"}
         _require_equilibrium(plant, function.__name__)
         known = plant if isinstance(plant, StateSpace) else None
         came = {name: as_typed(name, kinds.get(name, ""), value, known) for name, value in came.items()}
@@ -136,6 +140,21 @@ def _require_equilibrium(plant: Any, name: str) -> None:
     if nonlinear is not None and not nonlinear.equilibrium and name != "equilibria":
         message = f"{name} is about a linearisation, and this plant has no equilibrium that was chosen"
         raise InputError(message, where="plant.equilibrium", repair="give one to symobs.linearize")
+
+
+#: The tasks of plants with a dead time, and the keyword by which they are about a loop.
+_OF_DEAD_TIME = {"margins": "controller", "stability_region": "controller"}
+
+
+def _with_dead_time(plant: StateSpace, given: object, name: str, asked: Mapping[str, Any]) -> StateSpace:
+    """Return a plant, its dead time approximated where that is asked for; raises `InputError` where a task needs that."""
+    is_exact = _OF_DEAD_TIME.get(name) in asked
+    order = read_order(given) or (None if is_exact else plant.pade)
+    if order is None and not is_exact:
+        message = f"{name} is for plants without a dead time"
+        repair = "give pade = 2 for a Padé approximation of it; margins and stability_region with a controller take it exactly"
+        raise InputError(message, where="plant.delay", repair=repair)
+    return plant if order is None else approximated(plant, order)
 
 
 def _asked_anew(plant: Any) -> Any:

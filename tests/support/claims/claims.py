@@ -37,6 +37,7 @@ from tests.support.algebra import (
     transposed,
     value_at,
 )
+from tests.support.claims import claims_with_dead_time
 from tests.support.claims.claims_in_time import FUNCTIONS_OF_TIME
 from tests.support.claims.claims_of_advice import advice_holds
 from tests.support.claims.claims_of_modes import MODES
@@ -433,6 +434,9 @@ def applicable(result: Result, point: Point) -> Iterator[Result]:
 
 def region_holds(result: Any, at: Setting) -> None:
     """The inequalities hold at the point exactly if all roots are stable there, those of A moved by the margin."""
+    if result.plant.delay is not None:
+        claims_with_dead_time.region_holds(result, at)
+        return
     names, question = sorted(at.point), result.question
     boundary = question.boundary
     gains = [(at.B, question.K), (question.L, at.C)]

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 from tests.support.algebra import characteristic, coefficients_at
+from tests.support.claims import claims_with_dead_time
 
 if TYPE_CHECKING:
     from tests.support.algebra import Polynomial
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
 
 def holds(result: Any, at: Setting) -> None:
     """Hold the margins of a state feedback, or of a controller, to its loop."""
+    if result.plant.delay is not None:
+        claims_with_dead_time.margins_hold(result, at)
+        return
     if result.answer["closed"] is None:
         assert result.verdict == "no"
         return

@@ -6,7 +6,7 @@ const SCHEMA = "symobs-live/1", GRID = 20, REST = 250, BUSY = 150, LONGEST = 800
 const SVG = "http://www.w3.org/2000/svg";
 const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
 const SHORT = { control: "control_poles", observer: "observer_poles", order: "observer" };
-const PLANT = ["A", "B", "C", "D", "transfer_function", "dt"];
+const PLANT = ["A", "B", "C", "D", "transfer_function", "dt", "delay", "pade"];
 const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0", "step", "goal"];
 const GOALS = ["settling", "overshoot", "gain", "phase"], MOST_PINNED = 3;
 const DETAILS = ["full", "outline", "answer"];
@@ -285,7 +285,7 @@ export function mount(element, transport, options = {}) {
     for (const key of ["convention", "language"]) if (s[key]) told[key] = s[key];
     return told;
   };
-  const isRegion = () => s.task === "stability_region";
+  const isRegion = () => s.task === "stability_region" || s.task === "root_locus";
   const signature = () => JSON.stringify([s.task, s.plant, s.symbols, s.convention, s.language, isRegion() ? [s.spec, free()] : Object.keys(s.spec)]);
   const isStep = () => Boolean(s.step && view?.step);
   const axes = () => (isRegion() ? view?.region?.parameters ?? Object.keys(s.at) : []);
@@ -640,7 +640,7 @@ export function mount(element, transport, options = {}) {
     el.untold = h("div", { class: "fields" });
     fill = () => el.untold.replaceChildren(...(start?.tasks[s.task] ?? []).filter((key) => s.spec[key] === undefined && !setKeys.includes(key)).map(told));
     fill();
-    const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, ["A", "B", "C", "D", "transfer_function", "dt"].map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), el.untold);
+    const all = h("details", { class: "astext", open: el.plant.querySelector(".astext")?.open }, h("summary", {}, w("as_text")), h("div", { class: "fields" }, PLANT.map((name) => field(`text.${name}`, labelOf(name), s.plant[name], (t) => { if (t) s.plant[name] = t; else delete s.plant[name]; problemChanged(); })), field("text.symbols", labelOf("symbols"), Object.entries(s.symbols).map(([n, g]) => `${n}: ${g}`).join(", "), (t) => { s.symbols = Object.fromEntries(t.split(",").map((e) => e.split(":").map((p) => p.trim())).filter(([n]) => n).map(([n, g]) => [n, g || "real"])); problemChanged(); })), el.untold);
     const tables = Object.fromEntries(listed.map((name) => [name, cells(s.plant[name])]));
     const sizes = Object.entries({ states: tables.A?.length, inputs: tables.B?.[0]?.length, outputs: tables.C?.length }).filter(([, count]) => count).map(([kind, count]) => h("span", { class: "size" }, `${w(`count_${kind}`)} ${count} `, [[-1, "−"], [1, "+"]].map(([by, sign]) => h("button", { class: "quiet", "aria-label": w(by < 0 ? "fewer" : "more", { kind: w(`count_${kind}`) }), "data-where": `${kind}${by}`, "aria-disabled": String(count + by < 1), onclick: () => { if (count + by > 0 && !turning) resize(tables, kind, by); } }, sign))));
     if (s.plant.transfer_function !== undefined) rows.push(field("plant.transfer_function", "P(s)", s.plant.transfer_function, (t) => { s.plant.transfer_function = t; problemChanged(); }));

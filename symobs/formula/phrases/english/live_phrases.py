@@ -78,6 +78,8 @@ PHRASES: dict[str, str] = {
     "live_field_transfer_function": "transfer function",
     "live_field_symbols": "symbols",
     "live_field_dt": "sampling period",
+    "live_field_delay": "dead time",
+    "live_field_pade": "order of the Padé approximation",
     "live_field_sampling_period": "sampling period",
     "live_field_impulse": "impulse",
     "live_no_language": "There is no language {code} here; choose one of the list.",
@@ -296,6 +298,6 @@ CONTINUES = (
     "live_field_zero", "live_field_member", "live_field_choose", "live_field_observer_poles", "live_field_observer_polynomial",
     "live_field_control_poles", "live_field_control_polynomial", "live_field_settling_time", "live_field_overshoot",
     "live_field_reference_matrix", "live_field_reference_start", "live_field_transfer_function",
-    "live_field_symbols", "live_field_dt", "live_field_sampling_period", "live_field_impulse", "live_comma", "live_comma_repair",
+    "live_field_symbols", "live_field_dt", "live_field_delay", "live_field_pade", "live_field_sampling_period", "live_field_impulse", "live_comma", "live_comma_repair",
     "said_no_state_repair", "said_other_sign_repair", "said_no_rational", "said_no_rational_repair",
 )  # fmt: skip

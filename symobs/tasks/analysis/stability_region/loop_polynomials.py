@@ -5,7 +5,7 @@ F may be improper, as Kp + Ki/s + Kd s is: the loop F G alone counts.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from symobs.exact import Scalar, transfer
 from symobs.ground.errors import InputError
@@ -16,6 +16,12 @@ if TYPE_CHECKING:
 
 #: Where a controller stands in a file.
 _WHERE = "specification.controller"
+
+
+class Parameters(NamedTuple):
+    """The names that a region is one of."""
+
+    parameters: tuple[str, ...]
 
 
 def monic(controller: WrittenTransferFunction) -> tuple[Scalar, Scalar]:

@@ -630,6 +630,7 @@ def stability_region(
     K, L           gains with free entries, "[h1; h2]": χ(s) = det(sI − A + BK), det(sI − A + LC), or their product
     controller     F(s) with free letters, "k" or "Kp + Ki/s + Kd*s": χ(s) is the numerator of 1 + F(s)G(s), nothing cancelled
     parameters     the names to find the region of; else the free names of the gains, else those without a sign
+    With a dead time at the input of the plant: one gain, "k" or "k*(1 + 1/s)"; ends are exact, or have twelve certain digits.
     margin         α ≥ 0: all roots in Re s < −α           radius   0 < ρ ≤ 1, discrete time: all roots in |z| < ρ
     Returns polynomial, routh_table, stable_if; for one parameter intervals, for two cells, components, excluded_points;
     empty, bounded, sample_points.  One and two parameters without other symbols: exact; otherwise equivalent conditions.
@@ -645,5 +646,10 @@ def stability_region(
     else:
         known = Symbols.of(symbols).naming(parameters, where)
         asked = StateSpace.from_polynomial(plant if polynomial is None else polynomial, dt, symbols=known)
+    if asked.delay is not None:
+        from symobs.tasks.analysis.stability_region.delayed_region import delayed_region  # noqa: PLC0415 - dead times alone
+
+        others = {"K": K, "L": L, "margin": margin, "radius": radius, "polynomial": polynomial}
+        return delayed_region(asked.in_digits(), controller, parameters, others).asked(method)
     question = read_question(asked.in_digits(), {"K": K, "L": L}, parameters, margin, radius, controller)
     return choose("stability_region", method, "routh").solve(question).asked(method)

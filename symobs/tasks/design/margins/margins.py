@@ -19,6 +19,7 @@ from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
 from symobs.formula.tree import Decimals, Environment
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
+from symobs.ground.later import Later
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation.builder import Builder, predicate
 from symobs.stability.frequency_plots import bode_picture, nyquist_picture
@@ -45,6 +46,8 @@ if TYPE_CHECKING:
     from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
 
 
+#: The margins of loops with a dead time are of the type below, and imported where there is one.
+_dead_time = Later("symobs.tasks.design.margins.delayed_margins")
 #: The margins, as they are called.
 MARGINS = ("gain_down", "gain_up", "phase_deg", "modulus", "peak", "slowest")
 #: The polynomial of the closed loop, the matrix of what is added to the plant, and where the loop is cut.
@@ -225,11 +228,13 @@ def _written(value: Any) -> Any:
 
 def public(value: Any) -> Any:
     """Return an exact number as SymPy has it, a rounded one as a decimal."""
-    from symobs.exact.sympy_bridge.conversion import real_to_sympy  # noqa: PLC0415 - only who asks in Python pays
+    from symobs.exact.sympy_bridge.conversion import real_to_sympy, scalar_to_sympy  # noqa: PLC0415 - Python's face
     from symobs.exact.sympy_bridge.sympy_import import sympy  # noqa: PLC0415
 
     if value == INFINITE:
         return sympy.oo
+    if isinstance(value, Scalar):
+        return scalar_to_sympy(value)
     return real_to_sympy(value) if isinstance(value, RealNumber) else Decimal(value)
 
 
@@ -334,6 +339,7 @@ def margins(
     Returns gain_down and gain_up, the ends of the interval around 1 of the gains that keep the loop stable, and slowest, the
     largest real part (modulus) of its poles, exactly; phase_deg, the smallest change of phase either way that does not,
     modulus, the smallest distance from −1, and peak, the largest |1/(1 + loop)|, to six certain digits after the point.
+    Of a plant with a dead time the loop is that of a controller; what has no closed form has twelve certain digits.
     Where it is unstable, too: open_loop_unstable, encirclements (of −1, counterclockwise) and closed_loop_unstable,
     axis_crossings (omega, value), gain_crossover, phase_crossover, and delay_margin, the least φ/ω.
     The verdict is `no` where the closed loop is not stable, `undecided` with symbols.  Raises `InputError` for several
@@ -350,6 +356,9 @@ def margins(
             reject_both("controller", controller, value, None, other=name)
         plant.require("B", "C", task="margins")
         plant = plant.in_digits()
+        if plant.delay is not None:
+            delayed: Result = _dead_time.DelayedMargins.of_loop(plant, controller)
+            return delayed.asked(method)
         written = read_transfer_function(controller, plant.symbols, plant.variable, "specification.controller")
         found: Result = chosen.solve(plant, None, written, loop_of_controller(plant, written))
         return found.asked(method)

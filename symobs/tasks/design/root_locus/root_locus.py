@@ -22,6 +22,7 @@ from symobs.exact.algebraic.root_loci import (
     landmarks,
     leads_negatively,
     omega_digits,
+    quotient_at,
     slope_of,
 )
 from symobs.formula.tree import Decimals, Environment, Roots
@@ -32,7 +33,7 @@ from symobs.stability.plots import root_locus as paths_of_roots
 from symobs.system.conditions import sign_of
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import factored_form, given
-from symobs.tasks.analysis.stability_region.loop_polynomials import monic
+from symobs.tasks.analysis.stability_region.loop_polynomials import Parameters, monic
 from symobs.tasks.analysis.stability_region.stability_region import stability_region
 from symobs.tasks.analysis.stability_region.stability_region_page import write_line
 from symobs.tasks.design.margins.margins import loop_of_controller
@@ -41,6 +42,7 @@ from symobs.tasks.result import Result, choose, holds, method, page_of, task
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.formula.figures import PoleMap
     from symobs.proof.certificate.claims import Claim
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
@@ -57,7 +59,8 @@ class RootLocus(Result):
     sign: int
 
     task: ClassVar[str] = "root_locus"
-    answered_by = ("breakaway", "crossings")
+    answered_by = ("breakaway", "crossings", "stable_if")
+    panels = ("region",)
 
     def claims(self) -> Iterator[Claim]:
         """Yield what p and q are; the region of stability is claimed by its own task."""
@@ -143,6 +146,29 @@ class RootLocus(Result):
         return found
 
     @property
+    def question(self) -> Parameters:
+        """What moves."""
+        return Parameters(("k",))
+
+    @cached_property
+    def picture(self) -> PoleMap | None:
+        """The paths from k = 0 to twice the largest gain of a landmark, with the poles and the zeros; None with symbols."""
+        p, q, variable, discrete = self.answer["p"], self.answer["q"], self.plant.variable, self.plant.is_discrete
+        if not self.is_numeric:
+            return None
+        gains = [told["k"] for kind in ("branch", "crossing") for told in landmarks(kind, p, q, variable)]
+        end = Fraction(ceil(2 * max([Fraction(1), *gains])))
+        drawn = paths_of_roots(
+            p + Scalar.symbol("k") * q, variable, "k", (Fraction(0), end), None, Fraction(1) if discrete else None
+        )
+        if drawn is None:
+            return None
+        zeros = tuple(complex_roots([c.fraction() for c in q.coefficients(variable)])) if q.degree(variable) > 0 else ()
+        places = [place for path in (*drawn.paths, zeros) for place in path]
+        window = range_around([x for x, _ in places], spread=True), range_around([y for _, y in places], spread=True)
+        return replace(drawn, zeros=zeros, window=window)
+
+    @property
     def _crossings(self) -> list[dict[str, Any]] | None:
         """The crossings of the imaginary axis with symbols, where ω² is rational in them and neither ω² nor k surely ≤ 0."""
         if self.plant.is_discrete:
@@ -155,13 +181,18 @@ class RootLocus(Result):
 
     @cached_property
     def _branch_points(self) -> list[dict[str, Any]]:
-        """The rational multiple roots with symbols, each with its k: on the locus where that is not negative."""
+        """The multiple roots with symbols of degree 1 and 2, each with its k: on the locus where that is not negative."""
         p, q, variable = self.answer["p"], self.answer["q"], self.plant.variable
-        rational = [
-            root.centre for root in roots_of(slope_of(p, q, variable), variable) if root.factor.degree(variable) == 1
-        ]
-        places = [place for place in dict.fromkeys(rational) if not q.substitute({variable: place}).is_zero]
-        return [{"s": s, "k": -p.substitute({variable: s}) / q.substitute({variable: s})} for s in places]
+        found: list[dict[str, Any]] = []
+        for root in dict.fromkeys(roots_of(slope_of(p, q, variable), variable)):
+            if root.factor.degree(variable) == 1 and not q.substitute({variable: root.centre}).is_zero:
+                place = {variable: root.centre}
+                found.append({"s": root.centre, "k": -p.substitute(place) / q.substitute(place)})
+            elif root.is_closed and root.factor.degree(variable) == 2:
+                rational, part = quotient_at(p, q, root.factor, variable)
+                k = f"{-(rational + part * root.centre)} + ({-part * root.sign})*sqrt({root.radicand})"
+                found.append({"s": root, "k": k})
+        return found
 
 
 def _exact(number: RealNumber) -> Any:
@@ -239,8 +270,8 @@ def write_root_locus(page: Builder, result: RootLocus) -> None:
                 _landmarks(page, result, kind)
         page.remark("locus_stability")
         write_line(page, result.region, "chi_p", with_pictures=False)
-        if result.is_numeric:
-            _picture(page, result)
+        if result.picture is not None:
+            page.plot(result.picture, page["chi_p"])
 
 
 def _polynomials(page: Builder, result: RootLocus) -> None:
@@ -273,22 +304,6 @@ def _ends(page: Builder, result: RootLocus) -> None:
         page.remark("locus_axis_odd" if lead == "positive" else "locus_axis_even")
     if result.centroid is not None:
         page.remark("locus_asymptotes", excess=str(result.excess), centroid=page.value(result.centroid))
-
-
-def _picture(page: Builder, result: RootLocus) -> None:
-    """Draw the paths from k = 0 to twice the largest gain of a landmark, with the poles and the zeros."""
-    p, q, variable, discrete = result.answer["p"], result.answer["q"], page.plant.variable, page.plant.is_discrete
-    gains = [told["k"] for kind in ("branch", "crossing") for told in landmarks(kind, p, q, variable)]
-    end = Fraction(ceil(2 * max([Fraction(1), *gains])))
-    drawn = paths_of_roots(
-        p + Scalar.symbol("k") * q, variable, "k", (Fraction(0), end), None, Fraction(1) if discrete else None
-    )
-    if drawn is None:
-        return
-    zeros = tuple(complex_roots([c.fraction() for c in q.coefficients(variable)])) if q.degree(variable) > 0 else ()
-    places = [place for path in (*drawn.paths, zeros) for place in path]
-    window = range_around([x for x, _ in places], spread=True), range_around([y for _, y in places], spread=True)
-    page.plot(replace(drawn, zeros=zeros, window=window), page["chi_p"])
 
 
 def _landmarks(page: Builder, result: RootLocus, kind: str) -> None:

@@ -577,7 +577,7 @@ def test_the_start_names_tasks_and_examples() -> None:
         told = dict(parse_qsl(example["link"]))
         assert told.pop("task") == example["task"]
         assert told.keys() - {SHORT.get(key, key) for key in found["tasks"][example["task"]]} <= {
-            "v", "A", "B", "C", "D", "transfer_function", "dt", "symbols", "convention", "H",
+            "v", "A", "B", "C", "D", "transfer_function", "dt", "delay", "symbols", "convention", "H",
         }  # fmt: skip  # H is L in the letters of one convention
 
 
