@@ -36,6 +36,7 @@ class Equilibria(Result):
     """Points with f = 0, which are all there are where the search left nothing open."""
 
     task: ClassVar[str] = "equilibria"
+    answered_by = ("points", "stable")
 
     @property
     def found(self) -> Found:
@@ -63,11 +64,11 @@ class Equilibria(Result):
         """Return an environment in which functions have their identities, roots their signs, and the point is one."""
         relations = (*identities(values)[1], *(zero for value in values for zero in self._roots_by_signs(value)))
         relations += tuple(_zeros(point))
-        return Environment(variable=self.plant.variable, relations=relations, signs=self._signs)
+        return Environment(variable=self.plant.variable, relations=relations, signs=self.signs_at_rest)
 
     def _roots_by_signs(self, value: Matrix) -> list[Scalar]:
         """Return what vanishes since the signs of the parameters decide roots of squares."""
-        differences = (root.value - by_signs(root.value, self._signs) for root in all_roots(value))
+        differences = (root.value - by_signs(root.value, self.signs_at_rest) for root in all_roots(value))
         return [difference.numerator for difference in differences if not difference.is_zero]
 
     def _rest(self, point: Equilibrium) -> list[Scalar]:
@@ -80,7 +81,8 @@ class Equilibria(Result):
         return known_of(self.given)
 
     @property
-    def _signs(self) -> dict[str, str]:
+    def signs_at_rest(self) -> dict[str, str]:
+        """The signs of parameters, states and inputs."""
         names = self.given.states + self.given.inputs
         return {**self.plant.symbols.signs, **{name: self.plant.symbols.sign(name) for name in names}}
 
@@ -133,7 +135,9 @@ class Equilibria(Result):
         """Return ∂f/∂x at a point, None where f has no derivative that is written there."""
         try:
             value = self.jacobian.substitute(self._values(point))
-            rows = [[simplified(normal_form(by_signs(entry, self._signs))) for entry in row] for row in value.rows]
+            rows = [
+                [simplified(normal_form(by_signs(entry, self.signs_at_rest))) for entry in row] for row in value.rows
+            ]
         except (ZeroDivisionError, NotWritten):
             return None
         zeros = _zeros(point)
@@ -144,12 +148,12 @@ class Equilibria(Result):
         if (A := self.matrix_at(point)) is None:
             return "undecided", []
         polynomial = simplified(A.characteristic_polynomial(self.plant.variable))
-        found = stability(polynomial, self.plant.variable, self._signs, discrete=self.plant.is_discrete)
+        found = stability(polynomial, self.plant.variable, self.signs_at_rest, discrete=self.plant.is_discrete)
         told = {str(condition.expression) for condition in point.conditions if condition.operator == ">"}
-        left = [value for value in found.positive if not _is_told(value, told, self._signs)]
+        left = [value for value in found.positive if not _is_told(value, told, self.signs_at_rest)]
         if found.verdict == "conditional" and not left:
             return "yes", []
-        return found.verdict, found.inequalities(self._signs) if left else []
+        return found.verdict, found.inequalities(self.signs_at_rest) if left else []
 
     def write(self, page: Builder) -> None:
         """Write the plant, what vanishes at rest, and each equilibrium with its linearisation."""
