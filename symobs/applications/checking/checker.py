@@ -27,6 +27,7 @@ from symobs.applications.checking.faults import Explained, explain_gain, explain
 from symobs.applications.checking.folders import text_of_answer, text_of_path
 from symobs.applications.checking.handwriting import entries_of, fields_of, law_of, listed_of, with_own_letters
 from symobs.applications.checking.judgement import judge_task, rounds
+from symobs.applications.checking.motion_lines import without_motion
 from symobs.applications.checking.parts import OF_THE_PLANT, asked_of, exists, field_called, known_names, part_of_task
 from symobs.applications.checking.points import Reader
 from symobs.applications.checking.regions import read_conditions
@@ -531,12 +532,15 @@ class Checked:
     def read(self, text: str, where: str = "answer") -> Answer:
         """Return the answer of a text: its lines, or the one value that is asked for; raises `ProblemErrors`."""
         at_rest = next((view for view in self.views() if view.task == "equilibria"), None)
-        if at_rest is not None and not is_of_tables(text):
-            points, text = Reader(at_rest).lines_of(text)
-            if points:
+        if self.problem.plant.nonlinear is not None and not is_of_tables(text):
+            steps, text = without_motion(text, self.problem.plant)
+            points, text = Reader(at_rest).lines_of(text) if at_rest is not None else ([], text)
+            if points or steps:
                 rest = read_answer(text, where) if text.strip() else Answer(loose=True)
-                values = {**rest.values, "points": points}
-                return replace(rest, values=values, written={**rest.written, "points": "; ".join(points)})
+                listed = {"points": points} if points else {}
+                written = {**rest.written, **{name: "; ".join(value) for name, value in listed.items()}}
+                values = {**rest.values, **listed}
+                return replace(rest, values=values, written=written, steps=(*steps, *rest.steps))
         try:
             return read_answer(text, where)
         except ProblemErrors as errors:
@@ -561,7 +565,7 @@ class Checked:
             return replace(self.read(text, "answer"), note=note)
         views = self.views()
         asked = self.asked(views)
-        if isinstance(answer, str) and any(name == "points" for _, name in asked):
+        if isinstance(answer, str) and self.problem.plant.nonlinear is not None and (len(asked) != 1 or states(answer)):
             return self.read(answer)
         if isinstance(answer, Mapping) or (isinstance(answer, str) and (len(asked) != 1 or states(answer))):
             return read_answer(answer)
