@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -11,6 +12,8 @@ from symobs.formula.tree import At, Environment, SymbolList
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
+from symobs.proof.derivation.facts import on_stratum
+from symobs.proof.derivation.steps import CaseStep
 from symobs.stability.criteria.stability import stability
 from symobs.system.conditions import sign_of
 from symobs.system.equilibria import Equilibria as Found
@@ -18,6 +21,7 @@ from symobs.system.equilibria import Equilibrium, by_signs
 from symobs.system.linearize import all_equilibria, is_rate
 from symobs.system.motion import simplified, with_primes
 from symobs.system.reading import Nonlinear
+from symobs.tasks.analysis.equilibria.branches import picture_of
 from symobs.tasks.analysis.linearisation_page import partial_derivatives, state_nonlinear
 from symobs.tasks.analysis.page_parts import say_stability, state_signs
 from symobs.tasks.result import Result, choose, method, task
@@ -26,6 +30,7 @@ from symobs.tasks.result.output_methods import to_sympy
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from symobs.formula.figures import BranchPicture
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Name
@@ -55,7 +60,7 @@ class Equilibria(Result):
             values = Matrix.column(self._rest(point))
             yield Claim(relation(values, values * 0), self._environment(point, values), f"f = 0 at {_text(point)}")
             if (A := self.matrix_at(point)) is not None:
-                raw = self.jacobian.substitute(self._values(point))
+                raw = self.jacobian.substitute(self.values_at(point))
                 yield Claim(
                     relation(raw, A), self._environment(point, raw, A), f"the linearisation at equilibrium {number}"
                 )
@@ -117,7 +122,7 @@ class Equilibria(Result):
 
     def _named(self, point: Equilibrium) -> dict[str, Scalar]:
         """Return the values of the states and inputs in their order, by the names as they are typed."""
-        given, values = self.given, self._values(point)
+        given, values = self.given, self.values_at(point)
         named = with_primes if given.motion is not None else str
         return {named(name): values[name] for name in given.states + given.inputs}
 
@@ -126,7 +131,7 @@ class Equilibria(Result):
         """∂f/∂x."""
         return self.given.jacobian(self.given.f, self.given.states)
 
-    def _values(self, point: Equilibrium) -> dict[str, Scalar]:
+    def values_at(self, point: Equilibrium) -> dict[str, Scalar]:
         """Return the value of each state and input at a point."""
         at_rest = {name: Scalar.of(0) for name in self.given.states if is_rate(name, self.given)}
         return {**at_rest, **self._known, **point.values}
@@ -134,7 +139,7 @@ class Equilibria(Result):
     def matrix_at(self, point: Equilibrium) -> Matrix | None:
         """Return ∂f/∂x at a point, None where f has no derivative that is written there."""
         try:
-            value = self.jacobian.substitute(self._values(point))
+            value = self.jacobian.substitute(self.values_at(point))
             rows = [
                 [simplified(normal_form(by_signs(entry, self.signs_at_rest))) for entry in row] for row in value.rows
             ]
@@ -143,11 +148,20 @@ class Equilibria(Result):
         zeros = _zeros(point)
         return modulo(Matrix.of(rows), Ideal.of(zeros)) if zeros else Matrix.of(rows)
 
+    def polynomial_at(self, point: Equilibrium) -> Scalar | None:
+        """Return the characteristic polynomial at a point, None where f has no derivative that is written there."""
+        A = self.matrix_at(point)
+        return None if A is None else simplified(A.characteristic_polynomial(self.plant.variable))
+
+    @cached_property
+    def picture(self) -> BranchPicture | None:
+        """The equilibria over the parameter, where there is one."""
+        return picture_of(self)
+
     def stability_at(self, point: Equilibrium) -> tuple[str, list[str]]:
         """Return whether the linearisation at a point is asymptotically stable, and where that needs conditions."""
-        if (A := self.matrix_at(point)) is None:
+        if (polynomial := self.polynomial_at(point)) is None:
             return "undecided", []
-        polynomial = simplified(A.characteristic_polynomial(self.plant.variable))
         found = stability(polynomial, self.plant.variable, self.signs_at_rest, discrete=self.plant.is_discrete)
         told = {str(condition.expression) for condition in point.conditions if condition.operator == ">"}
         left = [value for value in found.positive if not _is_told(value, told, self.signs_at_rest)]
@@ -171,6 +185,8 @@ class Equilibria(Result):
                 page.remark("equilibria_all", number=str(len(found.points)))
             else:
                 page.remark("equilibria_none")
+            if self.picture is not None:
+                page.plot(self.picture, page["f_x"])
         for number, point in enumerate(found.points, 1):
             with page.section("equilibrium_numbered", number=str(number)):
                 self._tell(page, number, point)
@@ -185,8 +201,15 @@ class Equilibria(Result):
             page.remark("every_point_rests")
 
     def _tell(self, page: Builder, number: int, point: Equilibrium) -> None:
+        """Tell where there is a point, and there the point, f and the linearisation."""
+        for condition in point.conditions:
+            page.remark(f"rests_where_{_WHERE[condition.operator]}", value=condition.expression)
+        with _where_real(page, point, self.signs_at_rest):
+            self._tell_point(page, number, point)
+
+    def _tell_point(self, page: Builder, number: int, point: Equilibrium) -> None:
         """Tell a point, f there, and the linearisation."""
-        given, values = self.given, self._values(point)
+        given, values = self.given, self.values_at(point)
         moved = given.f.substitute(values)
         page.in_time(moved)
         page.where(*self._roots_by_signs(moved))
@@ -195,8 +218,6 @@ class Equilibria(Result):
             page.remark("an_equilibrium", names=SymbolList(names), values=Matrix.row(entries))
         else:
             page.remark("an_equilibrium_of_one", names=SymbolList(names), value=entries[0])
-        for condition in point.conditions:
-            page.remark(f"rests_where_{_WHERE[condition.operator]}", value=condition.expression)
         if point.free:
             page.remark("free_at_rest", names=SymbolList(point.free))
         if _zeros(point):  # what is 0 there is not 0 elsewhere on the page
@@ -215,7 +236,7 @@ class Equilibria(Result):
         given = self.given
         raw = self.jacobian.substitute(values)
         page.in_time(A)
-        if all_roots(raw) <= all_roots(A):
+        if all_roots(raw) <= all_roots(A) | all_roots(Matrix.column([*values.values()])):
             page.in_time(raw)
             columns = page.term(partial_derivatives("f_x", self.jacobian, given.states))
             for name in (*given.states, *given.inputs):
@@ -238,6 +259,27 @@ _WHERE = {">": "positive", ">=": "nonnegative", "!=": "nonzero", "==": "zero"}
 def _zeros(point: Equilibrium) -> list[Scalar]:
     """Return what must vanish for a point to be an equilibrium."""
     return [condition.expression for condition in point.conditions if condition.operator == "=="]
+
+
+@contextmanager
+def _where_real(page: Builder, point: Equilibrium, signs: Mapping[str, str]) -> Iterator[None]:
+    """Tell what follows as a case of conditions, where the roots of a point are real by these alone."""
+    roots = all_roots(Matrix.column([*point.values.values()]))
+    if all(sign_of(root.argument, signs) in {"positive", "nonnegative"} for root in roots):
+        yield
+        return
+    cases = [relation(c.expression, ">", 0) for c in point.conditions if c.operator in {">", ">="}]
+    steps, environment = page.steps, page.environment
+    page.steps = []
+    for case in cases:
+        page.environment = on_stratum(case, {}, page.environment)
+    try:
+        yield
+    finally:
+        inside, page.steps, page.environment = tuple(page.steps), steps, environment
+        for case in reversed(cases):
+            inside = (CaseStep(case, (), inside),)
+        page.steps += inside
 
 
 def _text(point: Equilibrium) -> str:
