@@ -219,8 +219,8 @@ class StateSpace:
         self.equations: tuple[Scalar, ...] = ()
         self.nonzero: tuple[Scalar, ...] = ()
         self.is_stratum = False
-        #: Whether these are the values of a plant with parameters: what was a case of its results is a result, no refusal.
-        self.is_at_values = False
+        #: The plant with parameters whose values these are: what was a case of its results is a result, no refusal.
+        self.general: StateSpace | None = None
         given = [part for part in parts.values() if part is not None]
         known.refuse_alike({*known.signs}.union(*(part.names for part in given)), "symbols")
         if any("t" in symbols_in(part) for part in given):

@@ -110,7 +110,7 @@ def _plant(plant: StateSpace, values: dict[str, Scalar]) -> StateSpace:
     left = {name: sign for name, sign in there.symbols.signs.items() if name in kept or name not in values}
     there = there.with_symbols(replace(there.symbols, signs=left))
     there.is_from_floats, there.is_in_decimals = plant.is_from_floats, plant.is_in_decimals
-    there.is_at_values = True
+    there.general = plant.general or plant
     return there
 
 
@@ -250,7 +250,11 @@ def evaluate(result: Any, points: Mapping[Any, Any]) -> dict[str, Any]:
 
     fields = _fields(result)
     if not fields:
-        words = "its answers are functions of t" if result.in_time else "its answers are polynomials or words"
+        words = (
+            f"its answers are functions of {result.argument}"
+            if result.in_time
+            else "its answers are polynomials or words"
+        )
         repair = "take sympy.lambdify on the field itself" if result.in_time else "read the fields themselves"
         raise InputError(f"{result.task} has no field of numbers: {words}", where="evaluate", repair=repair)
     given = _read(points, result, fields)
@@ -295,7 +299,7 @@ def _fill(result: Any, fields: Mapping[str, Any], points: Mapping[str, Any], whe
 
 def _entries_of(result: Any, fields: Mapping[str, Any]) -> list[Scalar | None]:
     """Return the entries of the fields of a case; None for those of a field that is missing there or has another shape."""
-    apart, found = {result.plant.variable, "t"}, list[Scalar | None]()
+    apart, found = _apart(result), list[Scalar | None]()
     for name, field in fields.items():
         own = result.numbers.get(name)
         alike = own is not None and getattr(own, "shape", None) == getattr(field, "shape", None)
@@ -308,7 +312,7 @@ def _all_hold(conditions: Iterable[Condition], result: Any, points: Mapping[str,
     """Return what is known of a conjunction at each point: the least that is known of its conditions."""
     import numpy as np
 
-    apart = {result.plant.variable, "t", EIGENVALUE}
+    apart = _apart(result) | {EIGENVALUE}
     known = np.full(count, _HOLDS)
     for condition in conditions:
         if not symbols_in(condition.expression) & apart:
@@ -335,13 +339,19 @@ def _known(condition: Condition, points: Mapping[str, Any]) -> Any:
 
 def _fields(result: Any) -> dict[str, Any]:
     """Return the fields of numbers: matrices, scalars and integers without time or the variable of polynomials."""
-    apart = {result.plant.variable, "t"}
+    apart = _apart(result)
     return {
         name: value
         for name, value in result.numbers.items()
         if (isinstance(value, int) and not isinstance(value, bool))
         or (isinstance(value, (Matrix, Scalar)) and not symbols_in(value) & apart)
     }
+
+
+def _apart(result: Any) -> set[str]:
+    """Return the variables of polynomials and functions, with the ends of the interval of a time-varying plant."""
+    ends = {"t0", "t1"} if result.plant.is_time_varying else set[str]()
+    return {result.plant.variable, "t", result.argument} | ends
 
 
 def _conditions(result: Any) -> Iterator[Condition]:

@@ -83,6 +83,17 @@ def completed(C: Matrix, ideal: Ideal | None = None) -> Matrix:
     return Matrix.block([[C], [unit_rows(C.shape[1], others)]]) if others else C
 
 
+def _coordinates(plant: StateSpace) -> Matrix:
+    """Return [C; R]; at values of parameters with the R of the plant that has them, where it serves."""
+    C, general = plant.matrices.C, plant.general
+    if general is not None and len(pivots := _pivots(general.matrices.C, None)) == C.shape[0]:
+        others = tuple(j for j in range(C.shape[1]) if j not in pivots)
+        T = Matrix.block([[C], [unit_rows(C.shape[1], others)]])
+        if not T.determinant().is_zero:
+            return T
+    return completed(C, plant.ideal)
+
+
 def _pivots(C: Matrix, ideal: Ideal | None) -> list[int]:
     """Return the pivot columns of C, row by row: the first with a constant entry, else the first with an entry."""
     rows = [list(row) for row in C.rows]
@@ -348,12 +359,12 @@ def reduced_observer_of(
 
     Raises `InputError` where the outputs of a plant depend on each other that is neither a stratum nor at values.
     """
-    C, ideal = plant.matrices.C, plant.ideal
-    if (plant.is_stratum or plant.is_at_values) and (rows := kernel(C.T, ideal)).shape[1]:
-        w = modulo(rows.select(range(rows.shape[0]), [0]).T, ideal)
+    C = plant.matrices.C
+    if (plant.is_stratum or plant.general) and (rows := kernel(C.T, plant.ideal)).shape[1]:
+        w = modulo(rows.select(range(rows.shape[0]), [0]).T, plant.ideal)
         return DependentOutputs(plant, method_name, dict.fromkeys("LTFGHM") | {"w": w}, desired)
     usable = T is not None and not plant.simplified(T.determinant()).is_zero
-    return ReducedOrderObserver.of(plant, desired, T if T is not None and usable else completed(C, ideal), method_name)
+    return ReducedOrderObserver.of(plant, desired, T if T is not None and usable else _coordinates(plant), method_name)
 
 
 def _unmeasured(plant: StateSpace, parts: Partition) -> StateSpace:
@@ -410,9 +421,9 @@ def reduced_order_observer(
     desired = desired_polynomial(plant, poles, polynomial, degree=unmeasured(plant), choose=choose)
     assert desired is not None  # noqa: S101 - required
     plant, (desired,) = in_common_field(plant, desired)
-    if plant.is_at_values and len(_pivots(plant.matrices.C, None)) < plant.outputs:
+    if plant.general and len(_pivots(plant.matrices.C, None)) < plant.outputs:
         return reduced_observer_of(plant, desired).asked(method)
-    coordinates = completed(plant.matrices.C) if T is None else _read_coordinates(T, plant)
+    coordinates = _coordinates(plant) if T is None else _read_coordinates(T, plant)
     return choose_method("reduced_order_observer", method, "partition").solve(plant, desired, coordinates).asked(method)
 
 

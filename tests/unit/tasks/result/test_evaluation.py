@@ -41,12 +41,13 @@ def test_refusals(points: dict[str, Any], message: str) -> None:
     [
         symobs.response(symobs.StateSpace("[0 1; 0 -a]", "[0; 1]", "[1 0]"), input="1"),
         symobs.matrix_exponential(symobs.StateSpace("[0 1; 0 -1]")),
+        symobs.matrix_exponential(symobs.StateSpace("[0 1; 0 2]", dt=True)),
     ],
-    ids=lambda result: result.task,
+    ids=lambda result: f"{result.task} of {result.argument}",
 )
 @tabled
 def test_functions_of_time_alone_are_refused(result: Any, points: dict[str, Any]) -> None:
-    with pytest.raises(InputError, match="has no field of numbers: its answers are functions of t"):
+    with pytest.raises(InputError, match=f"has no field of numbers: its answers are functions of {result.argument}"):
         result.evaluate(points)
 
 
@@ -56,3 +57,9 @@ def test_sums_over_roots_have_values_at_points() -> None:
     found = symobs.zero_order_hold(symobs.StateSpace(A, [0, 0, 1]), sampling_period="T").evaluate({"T": [0.25, 2.0]})
     for index, period in enumerate([0.25, 2.0]):
         np.testing.assert_allclose(found["A"][index], expm(np.array(A) * period), rtol=1e-12)
+
+
+def test_the_ends_of_the_interval_are_no_parameters() -> None:
+    plant = symobs.StateSpace("[0 a; 0 b]", "[t; 0]", "[1 0]")
+    found = symobs.time_varying_observability(plant).evaluate({"a": [1.0, 0.0], "b": [2.0, 2.0]})
+    assert found["rank"].tolist() == [2, 1]
