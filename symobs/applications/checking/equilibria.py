@@ -56,7 +56,12 @@ class Judge:
                 best = (found, self.read, self.order)
         assert best is not None  # noqa: S101 - there is a reading, or an error
         found, self.read, self.order = best
-        if found.verdict == "wrong" and self.marking.decimals != "accept" and has_decimals(given):
+        if (
+            found.verdict == "wrong"
+            and self.marking.decimals != "accept"
+            and not self.reader.are_rounded
+            and has_decimals(given)
+        ):
             other = Judge(self.view, replace(self.marking, decimals="accept"))
             if other.points(given).verdict in {"right", "undecided"}:
                 return PointsVerdict("wrong", "rounded", "the values are rounded, and exact ones are asked for")
@@ -129,6 +134,8 @@ class Judge:
         known = {name: value for name, value in values.items() if value != Scalar.symbol(name)}
         rest = self.result.given.at_rest(known, is_discrete=self.result.plant.is_discrete)
         zero = Scalar.of(0)
+        if self.reader.are_rounded and has_decimals([*point.values.values()]):
+            return PointsVerdict("wrong", "no_equilibrium", f"{point} is no equilibrium to the digits given")
         if not all(functions_agree(simplified(entry), zero, self.signs) for entry in rest):
             return PointsVerdict("wrong", "no_equilibrium", f"{point} is no equilibrium: f is not 0 there")
         family = next((right for right in self.reader.points if self._is_member(values, right)), None)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from fractions import Fraction
 from itertools import product
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -101,8 +102,10 @@ class Reader:
         self.names: tuple[str, ...] = (*self.given.states, *self.given.inputs)
         self.symbols = {*view.plant.symbols.signs}
         self.points: list[dict[str, Scalar]] = [
-            dict(zip(self.names, point.values(), strict=True)) for point in result.fields["points"]
+            dict(zip(self.names, map(_as_scalar, point.values()), strict=True)) for point in result.fields["points"]
         ]
+        #: Whether a point is known by numbers, so that nobody could write it exactly.
+        self.are_rounded = any(point.within is not None for point in result.found.points)
         self.common = self._common()
         self.known = {squashed(name).replace("_", ""): name for name in self.names}
 
@@ -376,7 +379,7 @@ class Reader:
         )
         if whole in free:
             whole = ""
-        rounding = marking.decimals == "accept"
+        rounding = marking.decimals == "accept" or self.are_rounded
         for k in range(-1, 3) if whole else (0,):
             found = dict(self.common)
             for name, text in point.values.items():
@@ -412,6 +415,11 @@ def _tables(text: str) -> list[dict[str, str]] | None:
         return None
     tables = [[(key[2], key[4]) for key in _ENTRY.finditer(table)] for table in re.findall(r"\{([^{}]*)\}", inside)]
     return [dict(table) for table in tables] if all(tables) else None
+
+
+def _as_scalar(value: Scalar | str) -> Scalar:
+    """Return a value, that of certain digits as a fraction."""
+    return value if isinstance(value, Scalar) else Scalar.of(Fraction(value))
 
 
 def _groups(text: str) -> list[tuple[int, int]]:

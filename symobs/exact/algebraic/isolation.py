@@ -7,6 +7,7 @@ and one alone; any other is halved.  Far out the function is looked at in 1/x.
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from flint import arb
@@ -62,13 +63,14 @@ def isolated(value: Scalar, name: str, low: Fraction | None, high: Fraction | No
 
     Without an end the function is looked at as far as 2⁴⁰, and beyond that in 1/x.
     """
-    is_complete = all(
-        end is not None or not _vanishes_far(value, name, side) for end, side in ((low, -1), (high, 1))
-    )
+    is_complete = all(end is not None or not _vanishes_far(value, name, side) for end, side in ((low, -1), (high, 1)))
     slope = derivative(value, name)
     found: list[Interval] = []
     begin, stop = (-_FAR if low is None else low), (_FAR if high is None else high)
-    waiting, seen = sorted(_parts(begin, stop), key=lambda each: -abs(sum(each))), 0  # the innermost are taken first
+    waiting, seen = (
+        sorted(_parts(begin, stop), key=lambda each: -abs(each[0] + each[1])),
+        0,
+    )  # the innermost are taken first
     while waiting:
         seen += 1
         interval = waiting.pop()
@@ -84,7 +86,7 @@ def isolated(value: Scalar, name: str, low: Fraction | None, high: Fraction | No
                 found.append(_narrowed(value, name, interval, signs[0]))
             continue
         middle = interval[0] + (interval[1] - interval[0]) * _PART
-        if interval[1] - interval[0] < _LEAST * max(1, abs(middle)):
+        if interval[1] - interval[0] < _LEAST * max(Fraction(1), abs(middle)):
             is_complete = False
             continue
         waiting += [(interval[0], middle), (middle, interval[1])]
@@ -95,13 +97,13 @@ def _parts(low: Fraction, high: Fraction) -> Iterator[Interval]:
     """Yield intervals at odd places, so that zeros at round numbers do not lie at their ends; from 0 on they double."""
     ends = [low, *(s * Fraction(2) ** k * Fraction(513, 512) for s in (-1, 1) for k in range(-8, 41)), high]
     inside = sorted({end for end in ends if low <= end <= high})
-    yield from zip(inside, inside[1:], strict=False)
+    yield from pairwise(inside)
 
 
 def _narrowed(value: Scalar, name: str, interval: Interval, sign: int) -> Interval:
     """Return a narrow interval inside of one over whose ends the sign changes once."""
     low, high = interval
-    while high - low > _NARROW * max(1, abs(low)):
+    while high - low > _NARROW * max(Fraction(1), abs(low)):
         middle = low + (high - low) * _PART
         found = sign_on(value, name, (middle, middle))
         if not found:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from fractions import Fraction
 from functools import cached_property
+from math import ceil, floor
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Ideal, Matrix, Scalar, modulo
-from symobs.exact.core.generators import NotWritten, all_roots, identities, normal_form
-from symobs.formula.tree import At, Environment, SymbolList
+from symobs.exact.algebraic.enclosure import sign_of_number
+from symobs.exact.algebraic.isolation import digits_on, sign_on
+from symobs.exact.core.generators import NotWritten, all_roots, derivative, identities, normal_form
+from symobs.formula.tree import At, Environment, Literal, Relation, SymbolList
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation.builder import relation
@@ -16,8 +20,7 @@ from symobs.proof.derivation.facts import on_stratum
 from symobs.proof.derivation.steps import CaseStep
 from symobs.stability.criteria.stability import stability
 from symobs.system.conditions import sign_of
-from symobs.system.equilibria import Equilibria as Found
-from symobs.system.equilibria import Equilibrium, by_signs
+from symobs.system.decided_signs import by_signs
 from symobs.system.linearize import all_equilibria, is_rate
 from symobs.system.motion import simplified, with_primes
 from symobs.system.reading import Nonlinear
@@ -33,6 +36,9 @@ if TYPE_CHECKING:
     from symobs.formula.figures import BranchPicture
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
+    from symobs.system.equilibria import Equilibria as Found
+    from symobs.system.equilibria import Equilibrium
+    from symobs.system.equilibrium_search import Enclosure
     from symobs.system.specification import Name
 
 
@@ -59,11 +65,24 @@ class Equilibria(Result):
         for number, point in enumerate(self.found.points, 1):
             values = Matrix.column(self._rest(point))
             yield Claim(relation(values, values * 0), self._environment(point, values), f"f = 0 at {_text(point)}")
+            if point.within is not None:
+                yield self._sign_change(point.within)
             if (A := self.matrix_at(point)) is not None:
                 raw = self.jacobian.substitute(self.values_at(point))
                 yield Claim(
                     relation(raw, A), self._environment(point, raw, A), f"the linearisation at equilibrium {number}"
                 )
+
+    def _sign_change(self, within: Enclosure) -> Claim:
+        """Return the claim that what is 0 at a point that is known by numbers changes its sign around it."""
+        zero = Literal(Scalar.of(0))
+        (low, below), (high, _) = _ends(within)
+        there = (
+            At(Literal(within.equation), within.name, end)
+            for end in ((low, high) if below == "negative" else (high, low))
+        )
+        rising = Relation((next(there), zero, next(there)), ("<", "<"))
+        return Claim(rising, Environment(variable=self.plant.variable), f"a change of sign at {within.name}")
 
     def _environment(self, point: Equilibrium, *values: Matrix) -> Environment:
         """Return an environment in which functions have their identities, roots their signs, and the point is one."""
@@ -112,7 +131,7 @@ class Equilibria(Result):
         points, stable = self.found.points, [self.stability_at(point) for point in self.found.points]
         question = {} if self.found.are_all else {"question": f"{self.found.open_equations[0]} = 0 has no closed form"}
         return {
-            "points": [self._named(point) for point in points],
+            "points": [self._named(point) if point.within is None else self._digits(point) for point in points],
             "conditions": [[*point.conditions] for point in points],
             "stable": [verdict for verdict, _ in stable],
             "stable_if": [inequalities for _, inequalities in stable],
@@ -125,6 +144,15 @@ class Equilibria(Result):
         given, values = self.given, self.values_at(point)
         named = with_primes if given.motion is not None else str
         return {named(name): values[name] for name in given.states + given.inputs}
+
+    def _digits(self, point: Equilibrium) -> dict[str, Scalar | str]:
+        """Return the same of a point that is known by numbers: certain digits, and what is exact."""
+        within, exact = point.within, self._named(point)
+        assert within is not None  # noqa: S101 - the caller has looked
+        return {
+            name: value if value.is_constant else digits_on(value, within.name, within.interval, _DIGITS)
+            for name, value in exact.items()
+        }
 
     @property
     def jacobian(self) -> Matrix:
@@ -145,7 +173,7 @@ class Equilibria(Result):
             ]
         except (ZeroDivisionError, NotWritten):
             return None
-        zeros = _zeros(point)
+        zeros = _zeros(point) if point.within is None else []
         return modulo(Matrix.of(rows), Ideal.of(zeros)) if zeros else Matrix.of(rows)
 
     def polynomial_at(self, point: Equilibrium) -> Scalar | None:
@@ -164,6 +192,9 @@ class Equilibria(Result):
             return "undecided", []
         found = stability(polynomial, self.plant.variable, self.signs_at_rest, discrete=self.plant.is_discrete)
         told = {str(condition.expression) for condition in point.conditions if condition.operator == ">"}
+        if point.within is not None and found.verdict == "conditional":
+            signs = [sign_on(value, point.within.name, point.within.interval) for value in found.positive]
+            return ("no" if -1 in signs else "yes" if all(signs) else "undecided"), []
         left = [value for value in found.positive if not _is_told(value, told, self.signs_at_rest)]
         if found.verdict == "conditional" and not left:
             return "yes", []
@@ -209,6 +240,9 @@ class Equilibria(Result):
 
     def _tell_point(self, page: Builder, number: int, point: Equilibrium) -> None:
         """Tell a point, f there, and the linearisation."""
+        if point.within is not None:
+            self._tell_enclosed(page, point, point.within)
+            return
         given, values = self.given, self.values_at(point)
         moved = given.f.substitute(values)
         page.in_time(moved)
@@ -231,6 +265,18 @@ class Equilibria(Result):
         if (A := self.matrix_at(point)) is not None and number <= MOST_LETTERS:
             self._tell_linearisation(page, f"A_e{number}", A, values)
 
+    def _tell_enclosed(self, page: Builder, point: Equilibrium, within: Enclosure) -> None:
+        """Tell a point that is known by numbers: where what is left changes its sign, certain digits, and the stability."""
+        names, left = tuple(point.values), page.term(Literal(within.equation))
+        if "has_one_zero" not in page.told:
+            page.told.add("has_one_zero")
+            page.remark("has_one_zero", name=SymbolList((within.name,)), equation=within.equation)
+        page.remark("changes_its_sign")
+        page.equal(*(relation(left.at(within.name, end), _SIDES[sign], 0) for end, sign in _ends(within)))
+        digits = (digits_on(value, within.name, within.interval, _DIGITS_ON_PAGE) for value in point.values.values())
+        page.remark("an_equilibrium_by_numbers", names=SymbolList(names), values=", ".join(digits))
+        page.remark(f"enclosed_{self.stability_at(point)[0]}")
+
     def _tell_linearisation(self, page: Builder, letter: str, A: Matrix, values: Mapping[str, Scalar]) -> None:
         """Tell the matrix at a point, by partial derivatives where no root is written that it has not, and its stability."""
         given = self.given
@@ -251,14 +297,33 @@ class Equilibria(Result):
         say_stability(page, determinant)
 
 
+#: The digits of a point that is known by numbers; on a page fewer.
+_DIGITS, _DIGITS_ON_PAGE = 12, 6
 #: As many linearisations have a letter of their own.
 MOST_LETTERS = 9
+_SIDES = {"positive": ">", "negative": "<"}
 _WHERE = {">": "positive", ">=": "nonnegative", "!=": "nonzero", "==": "zero"}
 
 
 def _zeros(point: Equilibrium) -> list[Scalar]:
     """Return what must vanish for a point to be an equilibrium."""
-    return [condition.expression for condition in point.conditions if condition.operator == "=="]
+    zeros = [condition.expression for condition in point.conditions if condition.operator == "=="]
+    return zeros if point.within is None else [*zeros, point.within.equation]
+
+
+def _ends(within: Enclosure) -> tuple[tuple[Scalar, str], tuple[Scalar, str]]:
+    """Return short numbers around an enclosure, and the signs there of what is 0 inside, whose slope does not vanish."""
+    places, slope = len(str(int(abs(within.low)))), derivative(within.equation.numerator, within.name)
+    for digits in range(1, _DIGITS):
+        unit = Fraction(10) ** (places - digits)
+        low, high = floor(within.low / unit) * unit, ceil(within.high / unit) * unit
+        if sign_on(slope, within.name, (low, high)):
+            break
+    else:
+        low, high = within.interval
+    values = (within.equation.substitute({within.name: Scalar.of(end)}) for end in (low, high))
+    first, second = ((Scalar.of(end), sign_of_number(each)) for end, each in zip((low, high), values, strict=True))
+    return first, second
 
 
 @contextmanager
