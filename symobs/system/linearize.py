@@ -273,7 +273,9 @@ def _not_one(found: Equilibria, given: Nonlinear) -> InputError:
     if any(point.within is not None for point in found.points):
         listed = "; ".join(told_point(point, given) for point in found.points)
         message = f"an equilibrium has no closed form: {listed}"
-        repair = "give a state that is exact, and leave the input out, which then follows"
+        repair = "ask for the task equilibria, which encloses it"
+        if given.inputs:
+            repair = "give a state that is exact, and leave the input out, which then follows"
         return InputError(message, where=where, repair=repair)
     message = f"there are {len(found.points)} equilibria{'' if found.are_all else ' or more'}: {listed}"
     telling = next(
