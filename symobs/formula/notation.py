@@ -71,6 +71,11 @@ LETTERS: dict[str, LetterForm] = {
         f"A_e{k}": LetterForm(rf"A_{k}", f"A{'₀₁₂₃₄₅₆₇₈₉'[k]}", "matrix of the linearisation at an equilibrium")
         for k in range(1, 10)
     },
+    **{
+        f"{x}_e{k}": LetterForm(rf"{x}^{{*}}_{{{k}}}", f"{x}*{'₀₁₂₃₄₅₆₇₈₉'[k]}", f"{meaning} at an equilibrium")
+        for x, meaning in (("x", "states"), ("u", "inputs"))
+        for k in range(1, 10)
+    },
     "partial": LetterForm(r"\partial", "∂", "sign of a partial derivative"),
     "K": LetterForm("K", "K", "state feedback gain"),
     "L": LetterForm("L", "L", "observer gain"),

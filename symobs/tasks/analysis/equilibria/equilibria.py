@@ -247,11 +247,7 @@ class Equilibria(Result):
         moved = given.f.substitute(values)
         page.in_time(moved)
         page.where(*self._roots_by_signs(moved))
-        names, entries = tuple(point.values), [*point.values.values()]
-        if len(names) > 1:
-            page.remark("an_equilibrium", names=SymbolList(names), values=Matrix.row(entries))
-        else:
-            page.remark("an_equilibrium_of_one", names=SymbolList(names), value=entries[0])
+        self._tell_values(page, number, point, values)
         if point.free:
             page.remark("free_at_rest", names=SymbolList(point.free))
         if _zeros(point):  # what is 0 there is not 0 elsewhere on the page
@@ -261,9 +257,22 @@ class Equilibria(Result):
             there = At(there, name, values[name])
         time = "discrete" if self.plant.is_discrete else "continuous"
         rest = Matrix.column([values[name] if self.plant.is_discrete else Scalar.of(0) for name in given.states])
-        page.equal(relation(page.term(there), rest), say=f"is_at_rest_{time}", answer=True)
+        page.equal(relation(page.term(there), rest), say=f"is_at_rest_{time}")
         if (A := self.matrix_at(point)) is not None and number <= MOST_LETTERS:
             self._tell_linearisation(page, f"A_e{number}", A, values)
+
+    def _tell_values(self, page: Builder, number: int, point: Equilibrium, values: Mapping[str, Scalar]) -> None:
+        """Tell the states of a point, and its inputs where these are not given, each as an answer."""
+        inputs = tuple(name for name in self.given.inputs if name not in self._known)
+        if number > MOST_LETTERS:
+            names, entries = tuple(point.values), [*point.values.values()]
+            page.remark("an_equilibrium", names=SymbolList(names), values=Matrix.row(entries))
+            return
+        for letter, names in (("x", self.given.states), ("u", inputs)):
+            if names:
+                column = Matrix.column([values[name] for name in names])
+                value = column if len(names) > 1 else column[0, 0]
+                page.define(f"{letter}_e{number}", value, say=f"rests_{letter}", names=SymbolList(names), answer=True)
 
     def _tell_enclosed(self, page: Builder, point: Equilibrium, within: Enclosure) -> None:
         """Tell a point that is known by numbers: where what is left changes its sign, certain digits, and the stability."""

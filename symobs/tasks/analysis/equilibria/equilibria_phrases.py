@@ -12,7 +12,8 @@ PHRASES: dict[str, str] = {
     "equilibria_none": "There is no real solution, and no equilibrium.",
     "equilibria_found": "What follows are solutions; whether there are others is not decided here, since the zeros of {equation} have no closed form.",
     "an_equilibrium": "The plant rests at ({names:list}) = {values}.",
-    "an_equilibrium_of_one": "The plant rests at {names:list} = {value}.",
+    "rests_x": "At rest the states ({names:list}) are",
+    "rests_u": "The inputs ({names:list}) there are",
     "rests_where_positive": "This is where {value} is positive.",
     "rests_where_nonnegative": "This is where {value} is not negative.",
     "rests_where_nonzero": "This is where {value} is not 0.",
@@ -33,7 +34,6 @@ PHRASES: dict[str, str] = {
 NAMING = (
     "at_rest",
     "an_equilibrium",
-    "an_equilibrium_of_one",
     "rests_where_positive",
     "rests_where_nonnegative",
     "rests_where_nonzero",
