@@ -76,6 +76,10 @@ LETTERS: dict[str, LetterForm] = {
         for x, meaning in (("x", "states"), ("u", "inputs"))
         for k in range(1, 10)
     },
+    **{
+        f"chi_e{k}": LetterForm(rf"\chi_{k}({{v}})", f"χ{'₀₁₂₃₄₅₆₇₈₉'[k]}({{v}})", f"characteristic polynomial of A_{k}")
+        for k in range(1, 10)
+    },
     "partial": LetterForm(r"\partial", "∂", "sign of a partial derivative"),
     "K": LetterForm("K", "K", "state feedback gain"),
     "L": LetterForm("L", "L", "observer gain"),

@@ -33,3 +33,15 @@ def by_signs(value: Scalar, signs: Mapping[str, str]) -> Scalar:
         if not front.is_one or root.argument != inside:
             value = value.substitute({root.name: front * root_of(inside)})
     return value
+
+
+def without_squares(value: Scalar) -> Scalar:
+    """Return a value in which no square root stands squared: √a² is a."""
+    for root in sorted(all_roots(value), key=lambda root: root.text):
+        parts = []
+        for polynomial in (value.numerator, value.denominator):
+            powers = [*reversed(polynomial.coefficients(root.name))] if root.name in polynomial.names else [polynomial]
+            terms = (c * root.argument ** (k // 2) * root.value ** (k % 2) for k, c in enumerate(powers))
+            parts.append(sum(terms, Scalar.of(0)))
+        value = parts[0] / parts[1]
+    return value

@@ -20,7 +20,7 @@ from symobs.proof.derivation.facts import on_stratum
 from symobs.proof.derivation.steps import CaseStep
 from symobs.stability.criteria.stability import stability
 from symobs.system.conditions import sign_of
-from symobs.system.decided_signs import by_signs
+from symobs.system.decided_signs import by_signs, without_squares
 from symobs.system.linearize import all_equilibria, is_rate
 from symobs.system.motion import simplified, with_primes
 from symobs.system.reading import Nonlinear
@@ -179,7 +179,7 @@ class Equilibria(Result):
     def polynomial_at(self, point: Equilibrium) -> Scalar | None:
         """Return the characteristic polynomial at a point, None where f has no derivative that is written there."""
         A = self.matrix_at(point)
-        return None if A is None else simplified(A.characteristic_polynomial(self.plant.variable))
+        return None if A is None else _simple(A.characteristic_polynomial(self.plant.variable))
 
     @cached_property
     def picture(self) -> BranchPicture | None:
@@ -245,7 +245,7 @@ class Equilibria(Result):
             return
         given, values = self.given, self.values_at(point)
         moved = given.f.substitute(values)
-        page.in_time(moved)
+        page.in_time_by(*identities([moved]))
         page.where(*self._roots_by_signs(moved))
         self._tell_values(page, number, point, values)
         if point.free:
@@ -290,9 +290,9 @@ class Equilibria(Result):
         """Tell the matrix at a point, by partial derivatives where no root is written that it has not, and its stability."""
         given = self.given
         raw = self.jacobian.substitute(values)
-        page.in_time(A)
+        page.in_time_by(*identities([A]))
         if all_roots(raw) <= all_roots(A) | all_roots(Matrix.column([*values.values()])):
-            page.in_time(raw)
+            page.in_time_by(*identities([raw]))
             columns = page.term(partial_derivatives("f_x", self.jacobian, given.states))
             for name in (*given.states, *given.inputs):
                 columns = columns.at(name, values[name])
@@ -301,8 +301,11 @@ class Equilibria(Result):
             page.remark("linearised_there")
             page.given(relation(page[letter], A))
             page.environment = page.environment.extended_by(values={letter: A})
-        determinant = page(f"det(pencil({letter}))")
-        page.equal(relation(determinant, simplified(A.characteristic_polynomial(self.plant.variable))))
+        determinant, value = page(f"det(pencil({letter}))"), _simple(A.characteristic_polynomial(self.plant.variable))
+        if all_roots(A) and not all_roots(value):
+            determinant = page.define(f"chi_e{letter[3:]}", determinant, value)
+        else:
+            page.equal(relation(determinant, value))
         say_stability(page, determinant)
 
 
@@ -354,6 +357,10 @@ def _where_real(page: Builder, point: Equilibrium, signs: Mapping[str, str]) -> 
         for case in reversed(cases):
             inside = (CaseStep(case, (), inside),)
         page.steps += inside
+
+
+def _simple(value: Scalar) -> Scalar:
+    return without_squares(simplified(value))
 
 
 def _text(point: Equilibrium) -> str:
