@@ -72,12 +72,18 @@ LETTERS: dict[str, LetterForm] = {
         for k in range(1, 10)
     },
     **{
-        f"{x}_e{k}": LetterForm(rf"{x}^{{*}}_{{{k}}}", f"{x}*{'₀₁₂₃₄₅₆₇₈₉'[k]}", f"{meaning} at an equilibrium")
-        for x, meaning in (("x", "states"), ("u", "inputs"))
+        f"{x}_e{k}": LetterForm(
+            rf"{x}^{{*}}_{{{k}}}" if x != "g" else f"g_{k}",
+            f"{x}{'' if x == 'g' else '*'}{'₀₁₂₃₄₅₆₇₈₉'[k]}",
+            f"{meaning} at an equilibrium",
+        )
+        for x, meaning in (("x", "states"), ("u", "inputs"), ("g", "what is left of f"))
         for k in range(1, 10)
     },
     **{
-        f"chi_e{k}": LetterForm(rf"\chi_{k}({{v}})", f"χ{'₀₁₂₃₄₅₆₇₈₉'[k]}({{v}})", f"characteristic polynomial of A_{k}")
+        f"chi_e{k}": LetterForm(
+            rf"\chi_{k}({{v}})", f"χ{'₀₁₂₃₄₅₆₇₈₉'[k]}({{v}})", f"characteristic polynomial of A_{k}"
+        )
         for k in range(1, 10)
     },
     "partial": LetterForm(r"\partial", "∂", "sign of a partial derivative"),

@@ -276,12 +276,14 @@ class Equilibria(Result):
 
     def _tell_enclosed(self, page: Builder, point: Equilibrium, within: Enclosure) -> None:
         """Tell a point that is known by numbers: where what is left changes its sign, certain digits, and the stability."""
-        names, left = tuple(point.values), page.term(Literal(within.equation))
-        if "has_one_zero" not in page.told:
-            page.told.add("has_one_zero")
-            page.remark("has_one_zero", name=SymbolList((within.name,)), equation=within.equation)
-        page.remark("changes_its_sign")
-        page.equal(*(relation(left.at(within.name, end), _SIDES[sign], 0) for end, sign in _ends(within)))
+        names, equations = tuple(point.values), [each.within.equation for each in self.found.points if each.within]
+        letter = f"g_e{equations.index(within.equation) + 1}"
+        if not page.environment.defines(letter):
+            page.define(letter, within.equation, say="has_one_zero", unknown=SymbolList((within.name,)))
+        page.equal(
+            *(relation(page[letter].at(within.name, end), _SIDES[sign], 0) for end, sign in _ends(within)),
+            say="changes_its_sign",
+        )
         digits = (digits_on(value, within.name, within.interval, _DIGITS_ON_PAGE) for value in point.values.values())
         page.remark("an_equilibrium_by_numbers", names=SymbolList(names), values=", ".join(digits))
         page.remark(f"enclosed_{self.stability_at(point)[0]}")

@@ -21,8 +21,8 @@ PHRASES: dict[str, str] = {
     "free_at_rest": "Here {names:list} may have any value.",
     "is_at_rest_continuous": "There the states do not change:",
     "is_at_rest_discrete": "There the states keep their values:",
-    "has_one_zero": "The equations leave one in {name:list} alone, that {equation} is 0, whose zeros have no closed form.",
-    "changes_its_sign": "It changes its sign between two numbers, and interval arithmetic shows that its slope does not vanish between them:",
+    "has_one_zero": "The equations leave one in {unknown:list} alone, whose solutions have no closed form: that the following is 0.",
+    "changes_its_sign": "This changes its sign between two numbers, and interval arithmetic shows that its slope does not vanish between them:",
     "an_equilibrium_by_numbers": "So the plant rests at one point there, ({names:list}) = ({values}) to the digits printed.",
     "enclosed_yes": "On the whole interval the conditions of Hurwitz hold: the linearisation at this point is asymptotically stable.",
     "enclosed_no": "On the whole interval one of the conditions of Hurwitz fails: the linearisation at this point is not asymptotically stable.",
@@ -39,7 +39,6 @@ NAMING = (
     "rests_where_nonzero",
     "rests_where_zero",
     "equilibria_found",
-    "has_one_zero",
 )
 
 QUESTIONS: dict[str, str] = {
