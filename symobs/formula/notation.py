@@ -73,7 +73,7 @@ LETTERS: dict[str, LetterForm] = {
     },
     **{
         f"{x}_e{k}": LetterForm(
-            rf"{x}^{{*}}_{{{k}}}" if x != "g" else f"g_{k}",
+            rf"{x}_{k}^{{*}}" if x != "g" else f"g_{k}",
             f"{x}{'' if x == 'g' else '*'}{'₀₁₂₃₄₅₆₇₈₉'[k]}",
             f"{meaning} at an equilibrium",
         )

@@ -213,7 +213,7 @@ def faults_of_branches(picture: BranchPicture, f: object) -> Iterator[str]:
         yield f"the states are {', '.join(picture.states)}"
         return
     slopes = Matrix.block([[derivative(f, state) for state in picture.states]])
-    near = (picture.window[1][1] - picture.window[1][0]) * _NEAR
+    near = (picture.window[1][1] - picture.window[1][0]) * _NEAR / 8
     for branch in picture.branches:
         for k, (value, height) in enumerate(branch.points):
             numbers = {name: Scalar.of(value)}
@@ -229,7 +229,7 @@ def faults_of_branches(picture: BranchPicture, f: object) -> Iterator[str]:
                 verdict = stability(polynomial, EIGENVALUE, {}, discrete=picture.discrete).verdict
                 if verdict != ("yes" if branch.stable else "no"):
                     yield f"{name} = {value} is {'' if branch.stable else 'not '}stable there"
-        if len(branch.points) < _EVERY:
+        if len(branch.points) < _EVERY or sorted(branch.points) != list(branch.points):
             yield f"{len(branch.points)} points are a branch"
     for (value, height), exact in picture.marks:
         found = enclosed(exact, _BITS_OF_ZERO)

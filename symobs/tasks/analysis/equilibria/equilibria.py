@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from symobs.formula.figures import BranchPicture
+    from symobs.formula.tree.term import Term
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.equilibria import Equilibria as Found
@@ -223,20 +224,26 @@ class Equilibria(Result):
                 self._tell(page, number, point)
 
     def _tell_equations(self, page: Builder) -> None:
+        """Tell what vanishes at rest: f without rates, with the inputs that are given."""
         given = self.given
-        at_rest = [value.numerator for value in given.at_rest(self._known, is_discrete=self.plant.is_discrete)]
-        kept = [simplified(value) for value in at_rest if not value.is_zero]
-        if kept:
-            page.remark("at_rest", equations=Matrix.column(kept))
+        at_rest = {name: Scalar.of(0) for name in given.states if is_rate(name, given)} | self._known
+        value = given.f.substitute(at_rest)
+        time = "discrete" if self.plant.is_discrete else "continuous"
+        page.in_time_by(*identities([value]))
+        if at_rest:
+            page.equal(relation(_at(page["f_x"], at_rest), value), say=f"at_rest_{time}")
         else:
-            page.remark("every_point_rests")
+            page.remark(f"at_rest_as_given_{time}")
 
     def _tell(self, page: Builder, number: int, point: Equilibrium) -> None:
         """Tell where there is a point, and there the point, f and the linearisation."""
         for condition in point.conditions:
-            page.remark(f"rests_where_{_WHERE[condition.operator]}", value=condition.expression)
-        with _where_real(page, point, self.signs_at_rest):
+            if condition.operator == "==":
+                page.remark("rests_where_zero", value=condition.expression)
+        with _where(page, point):
             self._tell_point(page, number, point)
+            if any(condition.operator == ">=" for condition in point.conditions):
+                page.remark("rests_at_the_edge")
 
     def _tell_point(self, page: Builder, number: int, point: Equilibrium) -> None:
         """Tell a point, f there, and the linearisation."""
@@ -252,12 +259,10 @@ class Equilibria(Result):
             page.remark("free_at_rest", names=SymbolList(point.free))
         if _zeros(point):  # what is 0 there is not 0 elsewhere on the page
             return
-        there: Any = page["f_x"].formula
-        for name in (*given.states, *given.inputs):
-            there = At(there, name, values[name])
+        everything = {name: values[name] for name in (*given.states, *given.inputs)}
         time = "discrete" if self.plant.is_discrete else "continuous"
         rest = Matrix.column([values[name] if self.plant.is_discrete else Scalar.of(0) for name in given.states])
-        page.equal(relation(page.term(there), rest), say=f"is_at_rest_{time}")
+        page.equal(relation(_at(page["f_x"], everything), rest), say=f"is_at_rest_{time}")
         if (A := self.matrix_at(point)) is not None and number <= MOST_LETTERS:
             self._tell_linearisation(page, f"A_e{number}", A, values)
 
@@ -272,14 +277,16 @@ class Equilibria(Result):
             if names:
                 column = Matrix.column([values[name] for name in names])
                 value = column if len(names) > 1 else column[0, 0]
-                page.define(f"{letter}_e{number}", value, say=f"rests_{letter}", names=SymbolList(names), answer=True)
+                shown = page.set(f"{letter}_e{number}", value)
+                page.equal(relation(shown, value), say=f"rests_{letter}", names=SymbolList(names), answer=True)
 
     def _tell_enclosed(self, page: Builder, point: Equilibrium, within: Enclosure) -> None:
         """Tell a point that is known by numbers: where what is left changes its sign, certain digits, and the stability."""
         names, equations = tuple(point.values), [each.within.equation for each in self.found.points if each.within]
         letter = f"g_e{equations.index(within.equation) + 1}"
         if not page.environment.defines(letter):
-            page.define(letter, within.equation, say="has_one_zero", unknown=SymbolList((within.name,)))
+            shown = page.set(letter, within.equation)
+            page.equal(relation(shown, within.equation), say="has_one_zero", unknown=SymbolList((within.name,)))
         page.equal(
             *(relation(page[letter].at(within.name, end), _SIDES[sign], 0) for end, sign in _ends(within)),
             say="changes_its_sign",
@@ -300,9 +307,7 @@ class Equilibria(Result):
                 columns = columns.at(name, values[name])
             page.define(letter, columns, A, say="linearised_there", closing=False)
         else:
-            page.remark("linearised_there")
-            page.given(relation(page[letter], A))
-            page.environment = page.environment.extended_by(values={letter: A})
+            page.equal(relation(page.set(letter, A), A), say="linearised_there")
         determinant, value = page(f"det(pencil({letter}))"), _simple(A.characteristic_polynomial(self.plant.variable))
         if all_roots(A) and not all_roots(value):
             determinant = page.define(f"chi_e{letter[3:]}", determinant, value)
@@ -316,7 +321,7 @@ _DIGITS, _DIGITS_ON_PAGE = 12, 6
 #: As many linearisations have a letter of their own.
 MOST_LETTERS = 9
 _SIDES = {"positive": ">", "negative": "<"}
-_WHERE = {">": "positive", ">=": "nonnegative", "!=": "nonzero", "==": "zero"}
+_STRICT = {">": ">", ">=": ">", "!=": "!="}
 
 
 def _zeros(point: Equilibrium) -> list[Scalar]:
@@ -340,14 +345,17 @@ def _ends(within: Enclosure) -> tuple[tuple[Scalar, str], tuple[Scalar, str]]:
     return first, second
 
 
+def _at(term: Term, values: Mapping[str, Scalar]) -> Term:
+    """Return a term at values of names."""
+    for name, value in values.items():
+        term = term.at(name, value)
+    return term
+
+
 @contextmanager
-def _where_real(page: Builder, point: Equilibrium, signs: Mapping[str, str]) -> Iterator[None]:
-    """Tell what follows as a case of conditions, where the roots of a point are real by these alone."""
-    roots = all_roots(Matrix.column([*point.values.values()]))
-    if all(sign_of(root.argument, signs) in {"positive", "nonnegative"} for root in roots):
-        yield
-        return
-    cases = [relation(c.expression, ">", 0) for c in point.conditions if c.operator in {">", ">="}]
+def _where(page: Builder, point: Equilibrium) -> Iterator[None]:
+    """Tell what follows as the case of the conditions of a point."""
+    cases = [relation(c.expression, _STRICT[c.operator], 0) for c in point.conditions if c.operator in _STRICT]
     steps, environment = page.steps, page.environment
     page.steps = []
     for case in cases:

@@ -5,8 +5,10 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "equilibria": "Equilibria.",
     "equilibrium_numbered": "Equilibrium {number}.",
-    "at_rest": "Where nothing moves, the equations demand that {equations} is 0. They are solved by steps each of which is an equivalence: a product is 0 where a factor is, and angles count modulo 2π.",
-    "every_point_rests": "Where nothing moves, the equations demand nothing: every point is an equilibrium.",
+    "at_rest_continuous": "Where nothing moves, the following is 0. It is solved by steps each of which is an equivalence: a product is 0 where a factor is, and angles count modulo 2π.",
+    "at_rest_discrete": "Where nothing moves, the following is the state itself. It is solved by steps each of which is an equivalence: a product is 0 where a factor is, and angles count modulo 2π.",
+    "at_rest_as_given_continuous": "Where nothing moves, f is 0. This is solved by steps each of which is an equivalence: a product is 0 where a factor is, and angles count modulo 2π.",
+    "at_rest_as_given_discrete": "Where nothing moves, f is the state itself. This is solved by steps each of which is an equivalence: a product is 0 where a factor is, and angles count modulo 2π.",
     "equilibria_all": "There are {number} solutions, which follow, and no others.",
     "equilibria_one": "There is one solution, which follows, and no other.",
     "equilibria_none": "There is no real solution, and no equilibrium.",
@@ -14,10 +16,8 @@ PHRASES: dict[str, str] = {
     "an_equilibrium": "The plant rests at ({names:list}) = {values}.",
     "rests_x": "At rest the states ({names:list}) are",
     "rests_u": "The inputs ({names:list}) there are",
-    "rests_where_positive": "This is where {value} is positive.",
-    "rests_where_nonnegative": "This is where {value} is not negative.",
-    "rests_where_nonzero": "This is where {value} is not 0.",
     "rests_where_zero": "This is where {value} is 0.",
+    "rests_at_the_edge": "With = in place of > it is an equilibrium, too.",
     "free_at_rest": "Here {names:list} may have any value.",
     "is_at_rest_continuous": "There the states do not change:",
     "is_at_rest_discrete": "There the states keep their values:",
@@ -32,11 +32,7 @@ PHRASES: dict[str, str] = {
 
 #: What these sentences contain is held to f by the display that follows.
 NAMING = (
-    "at_rest",
     "an_equilibrium",
-    "rests_where_positive",
-    "rests_where_nonnegative",
-    "rests_where_nonzero",
     "rests_where_zero",
     "equilibria_found",
 )
