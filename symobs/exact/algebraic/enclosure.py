@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from flint import arb, ctx
 
 from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.algebraic.root_parts import RootPart
 from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import PI, function_named, symbols_in
 from symobs.exact.core.ring import Precision
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 #: Bits that are tried in turn until an enclosure keeps clear of 0.
 _BITS = (64, 256, 1024, 4096)
-_KINDS = {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "log", "asin", "acos", "atan", "CRootOf"}
+_KINDS = {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "log", "asin", "acos", "atan", "CRootOf", "RootPart"}
 
 
 def is_number(value: Scalar) -> bool:
@@ -92,6 +93,8 @@ def _generator(name: str) -> arb:
         return arb.pi()
     if isinstance(found, RealRoot):
         return found.number.ball(ctx.prec)
+    if isinstance(found, RootPart):
+        return found.enclosed()
     if isinstance(found, RootSum):
         return _sum_over_roots(found, ctx.prec)
     enclosed: arb = getattr(_ball(found.argument), found.kind)()  # the kernel calls them so, too

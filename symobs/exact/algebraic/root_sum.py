@@ -91,7 +91,7 @@ class RootSum(Function):
         """Return an enclosure where q has rational coefficients, from disjoint enclosures of all its roots."""
         coefficients = tuple(c.fraction() for c in reversed(self.polynomial.coefficients(EIGENVALUE)))
         total = acb(0)
-        for root, slope in _roots_of(coefficients, ctx.prec):
+        for root, slope in roots_and_slopes(coefficients, ctx.prec):
             total = total + root**self.power * (root * time).exp() / slope
         return total.real
 
@@ -137,7 +137,7 @@ def _texts(q: Scalar, name: str) -> tuple[str, str]:
 
 
 @lru_cache(maxsize=256)
-def _roots_of(coefficients: tuple[Fraction, ...], bits: int) -> list[tuple[acb, acb]]:
+def roots_and_slopes(coefficients: tuple[Fraction, ...], bits: int) -> list[tuple[acb, acb]]:
     """Return enclosures of the roots of a polynomial without multiple ones, lowest coefficient first, and of its slopes."""
     q = fmpq_poly([fmpq(c.numerator, c.denominator) for c in coefficients])
     slope = acb_poly(q.derivative())

@@ -222,7 +222,11 @@ def complex_from_sympy(expression: Any, where: str, *, roots: bool = False) -> C
     if isinstance(expression, sympy.Poly):
         return complex_from_sympy(expression.as_expr(), where)
     if not isinstance(expression, sympy.Expr):
-        raise InputError(f"{type(expression).__name__} is not an exact expression", where=where)
+        connected = type(expression).__module__.startswith("sympy.physics.control")
+        repair = (
+            "give the connection itself where a plant is expected: symobs.observer(system, ...)" if connected else ""
+        )
+        raise InputError(f"{type(expression).__name__} is not an exact expression", where=where, repair=repair)
     if expression.is_Integer or expression.is_Rational:
         return Complex.of(Fraction(int(expression.p), int(expression.q)))
     if expression.is_Float:

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar, is_written_exactly, significant
 from symobs.exact.algebraic.enclosure import is_number, sign_of_number
+from symobs.exact.algebraic.root_parts import in_modes
+from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import function_named, roots_in, square_root
 from symobs.formula.tree import (
     Block,
@@ -80,6 +82,8 @@ class InDecimals:
                 return formula
             case Integral(integrand):
                 return replace(formula, integrand=self.formula(integrand))
+            case Product(factors) if any(map(_is_sum_over_roots, factors)):  # times a matrix, e^{At} mode by mode
+                return Product(tuple(each if _is_sum_over_roots(each) else self.formula(each) for each in factors))
         parts = self._parts(formula)
         if parts is not None:
             number, rest = parts
@@ -101,6 +105,8 @@ class InDecimals:
         """Return a number, a polynomial or a rational function."""
         if value.is_constant or is_number(value):
             return self.number(value)
+        if (modes := in_modes(value, self.digits)) is not None:
+            return self._numbers_of(separate_formula(modes))
         if is_leaf(value):
             return Literal(value)
         if any(is_time_function(name) for name in value.names):
@@ -297,6 +303,12 @@ class InDecimals:
         return Negative(whole) if isinstance(front, Negative) else whole
 
 
+def _is_sum_over_roots(formula: Formula) -> bool:
+    """Return whether a formula is a single sum over roots."""
+    is_value = isinstance(formula, Literal) and isinstance(formula.value, Scalar) and is_leaf(formula.value)
+    return is_value and any(isinstance(function_named(name), RootSum) for name in formula.value.names)  # type: ignore[union-attr]
+
+
 def _flat(factors: Sequence[Formula]) -> Iterator[Formula]:
     """Yield the factors of products, numbers before the fractions that they divide."""
     for factor in factors:
@@ -320,9 +332,11 @@ def _number_in(formula: Formula) -> Scalar | None:
         case Quotient(above, below):
             top, bottom = _number_in(above), _number_in(below)
             return None if top is None or bottom is None else top / bottom
-        case Product(factors):
-            numbers = [number for factor in factors if (number := _number_in(factor)) is not None]
-            return prod(numbers, start=_ONE) if len(numbers) == len(factors) else None
+        case Product(parts) | Sum(parts):
+            numbers = [number for part in parts if (number := _number_in(part)) is not None]
+            if len(numbers) < len(parts):
+                return None
+            return sum(numbers, _ONE * 0) if isinstance(formula, Sum) else prod(numbers, start=_ONE)
     return None
 
 
@@ -335,4 +349,4 @@ def _of_primes(value: Scalar) -> Scalar:
 def _is_plain_number(value: Scalar) -> bool:
     """Return whether a value is a number without exponentials, which stay as they are among functions of time."""
     found = [function_named(name) for name in value.names]
-    return is_number(value) and all(f is not None and f.kind in {"sqrt", "CRootOf"} for f in found)
+    return is_number(value) and all(f is not None and f.kind in {"sqrt", "CRootOf", "RootPart"} for f in found)

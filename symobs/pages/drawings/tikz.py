@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from symobs.pages.page.blocks import Inline
     from symobs.pages.printers.latex_printer import LatexPrinter
 
-_PLOT = r"x=1pt,y=1pt,>=stealth,line join=round,every node/.style={inner sep=0pt,font=\footnotesize}"
+#: A document may define the style `closer`, to draw its plots smaller.
+_PLOT = r"x=1pt,y=1pt,>=stealth,line join=round,every node/.style={inner sep=0pt,font=\footnotesize},closer/.try"
 _DIAGRAM = "x=1em,y=-1em,>=Stealth,every node/.style={inner sep=0pt}"
 _COLOURS = {"ink": "ink", "text": "black", "pale": "black!25"}
 _SHADE = "ink!12"

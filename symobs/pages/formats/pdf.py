@@ -46,14 +46,15 @@ _INSTALL = (
     "(or write LaTeX with --format latex)"
 )
 _SOURCE = "page.tex"
-#: A last page is drawn in where less than this part of it is filled, if that is enough: displays are set closer, pages are
-#: a centimetre higher, and the references run on.
-_SHORTEST = 0.25
+#: A last page is drawn in where less than this part of it is filled, if that is enough: displays are set closer, pages
+#: are 14 mm higher, plots a third smaller, and the references run on.
+_SHORTEST = 0.3
 _CLOSER = (
-    r"\addtolength{\textheight}{10mm}\addtolength{\topmargin}{-5mm}\everydisplay{\abovedisplayskip=3pt plus 1pt minus 2pt"
+    r"\addtolength{\textheight}{14mm}\addtolength{\topmargin}{-7mm}\everydisplay{\abovedisplayskip=3pt plus 1pt minus 2pt"
     r"\belowdisplayskip=\abovedisplayskip}\let\references\relax\let\endreferences\relax"
     r"\newenvironment{references}[1]{\def\item{\stepcounter{enumi}\hskip.8em plus .4em[\arabic{enumi}]~}"
     r"\setcounter{enumi}{0}\par\nopagebreak\smallskip\noindent\footnotesize\textbf{#1}}{\par}"
+    r"\ifdefined\tikzset\tikzset{closer/.style={scale=.65}}\fi"
 )
 _MEASURED = r"\AtEndDocument{\par\typeout{symobs fills \thepage, \the\pagetotal\space of \the\textheight}}"
 _WRITTEN = re.compile(r"^Output written on .*\((\d+) page", re.MULTILINE)

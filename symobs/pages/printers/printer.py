@@ -11,8 +11,9 @@ from copy import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING, Self
 
-from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits
+from symobs.exact import EIGENVALUE, Matrix, Scalar, decimal_digits, significant
 from symobs.exact.algebraic.real_algebraic import RealRoot
+from symobs.exact.algebraic.root_parts import RootPart
 from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import function_named
 from symobs.exact.time_functions.matrix_power import PowerOf
@@ -250,6 +251,8 @@ class Printer(FormulaWriter[B]):
         if isinstance(function, RealRoot):
             digits = self.language.decimal(str(function.number.truncated())).replace(",", "{,}")
             return self.named(rf"{digits}\ldots")
+        if isinstance(function, RootPart):
+            return self.numeral(significant(function.value, function.digits) or "")
         if isinstance(function, RootSum):
             q, below = (self.typeset(formula_of(part, EIGENVALUE)) for part in (function.polynomial, function.slope))
             over = self.joined([q, self.comparison("="), self.scalar(Scalar.of(0))], Level.SUM)

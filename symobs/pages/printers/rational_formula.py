@@ -23,6 +23,8 @@ FACTORED_UP_TO = 120
 
 _BITS_AT_ONCE = 10_000
 _CLEARLY = 0.85
+#: A sum of fractions is easier to read than one fraction over all of it.
+_PATIENCE = 1.25
 _PARENTHESES = 0.4
 
 Monomial = tuple[int, tuple[tuple[str, int], ...]]
@@ -158,6 +160,12 @@ def _constant(value: Scalar) -> Formula:
         return _number(value)
     if value.denominator.is_one:
         return _shortest(value)
+    whole, separate = _fraction(value), _term_by_term(value)
+    return separate if separate is not None and size(separate) < _PATIENCE * size(whole) else whole
+
+
+def _fraction(value: Scalar) -> Formula:
+    """Return numerator / denominator, without a minus in front where reversing both avoids it."""
     above, below = value.numerator, value.denominator
     top, bottom = _shortest(above), _shortest(below)
     if isinstance(_terms_of(top)[0], Negative):
@@ -166,6 +174,26 @@ def _constant(value: Scalar) -> Formula:
             return Quotient(_shortest(-above), turned)
         return Negative(Quotient(_shortest(-above), bottom))
     return Quotient(top, bottom)
+
+
+def _term_by_term(value: Scalar) -> Formula | None:
+    """Return 3p − b/J − R/H for (3HJp − bH − JR)/(HJ): a sum over a single product of letters, each term in lowest terms."""
+    below, terms = value.denominator.terms(), value.numerator.terms()
+    if len(below) > 1 or not below[0][1] or not 2 < len(terms) <= FACTORED_UP_TO:
+        return None
+    ((divisor, under),) = below
+    parts: list[Formula] = []
+    for coefficient, powers in human_order(terms):
+        common = gcd(coefficient, divisor)
+        rest = dict(powers)
+        for name, power in under:
+            rest[name] = rest.get(name, 0) - power
+        top = _monomial(abs(coefficient) // common, [(name, power) for name, power in rest.items() if power > 0])
+        bottom = _monomial(divisor // common, [(name, -power) for name, power in rest.items() if power < 0])
+        is_whole = isinstance(bottom, Literal) and bottom.value == Scalar.of(1)
+        part = top if is_whole else Quotient(top, bottom)
+        parts.append(Negative(part) if coefficient < 0 else part)
+    return sum_of(parts)
 
 
 def _number(value: Scalar) -> Formula:

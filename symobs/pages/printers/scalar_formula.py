@@ -37,7 +37,7 @@ _RANK |= {"power": 7, "re": 8, "im": 9, "KroneckerDelta": 10}
 def is_time_function(name: str) -> bool:
     """Return whether a generator is an exponential, a sine or a cosine."""
     found = function_named(name)
-    return found is not None and found.kind not in {"sqrt", "CRootOf"}
+    return found is not None and found.kind not in {"sqrt", "CRootOf", "RootPart"}
 
 
 def wave(formula: Formula) -> Function | None:

@@ -12,7 +12,8 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from symobs.exact import Scalar, is_correctly_written
+from symobs.exact import Matrix, Scalar, is_correctly_written
+from symobs.exact.algebraic.root_parts import in_modes, vanishes
 from symobs.exact.core.generators import identities
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
 from symobs.formula.figures import letter_for, without_sign
@@ -134,8 +135,10 @@ class _Comparison:
         if _is_value(exact) and _is_value(shown):
             arithmetic = Exact(self.environment)
             self._digits(shown)
-            found = [evaluate(each, self.environment, arithmetic) for each in (exact, exact_meaning(shown))]
-            if found[0] != found[1] and not self._are_equal_in_time(exact, exact_meaning(shown)):
+            meant = exact_meaning(shown)
+            value, read = (evaluate(each, self.environment, arithmetic) for each in (exact, meant))
+            is_same = value == read or _are_modes(value, read, self.digits)
+            if not is_same and not self._are_equal_in_time(exact, meant):
                 reject(f"{shown}, whose value is not that of {exact},")
             return
         parts = children(shown)
@@ -156,6 +159,15 @@ class _Comparison:
             reject(f"{shown.value} ≈ {shown.text}")
         for part in children(shown):
             self._digits(part)
+
+
+def _are_modes(exact: Any, shown: Any, digits: int) -> bool:
+    """Return whether the second value is the first with its sums over roots mode by mode."""
+    if isinstance(exact, Matrix) and isinstance(shown, Matrix) and exact.shape == shown.shape:
+        pairs = zip(exact.entries, shown.entries, strict=True)
+        return all(one == other or _are_modes(one, other, digits) for one, other in pairs)
+    modes = in_modes(exact, digits) if isinstance(exact, Scalar) else None
+    return modes is not None and vanishes(modes - shown)
 
 
 def is_in_order(shown: Relation) -> bool:

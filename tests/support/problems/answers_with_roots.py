@@ -117,7 +117,7 @@ def _is_equal(one: sp.Expr, other: sp.Expr, draw: Random) -> bool | None:
     for _ in range(3):
         letters = sorted(one.free_symbols | other.free_symbols, key=str)
         at = {name: sp.Rational(draw.randint(3, 40), draw.randint(3, 40)) for name in letters}
-        left, right = (entry.subs(at).evalf(60) for entry in (one, other))
+        left, right = (entry.evalf(60, subs=at) for entry in (one, other))
         if not (left.is_real and right.is_real):
             return None
         if abs(left - right) > sp.Float("1e-40") * (1 + abs(right)):

@@ -99,6 +99,20 @@ def test_a_last_page_is_drawn_in_where_little_stands_on_it(
     assert f"Line {displays - 1}." in words
 
 
+def test_plots_are_smaller_where_a_last_page_is_drawn_in(require_tool: RequireTool, tmp_path: Path) -> None:
+    """A plot of 200 pt and displays of 520: at two thirds of its height a page holds both, at the whole height none does."""
+    begin = (ROOT / "latex_templates/article.tex").read_text("utf-8")
+    geometry = begin[begin.index(r"\usepackage[hmargin") :].partition("\n")[0]
+    told = "".join(rf"Line {k}.\[x={k}\]" for k in range(21))
+    pages = []
+    for style in ("closer/.try", ""):
+        plot = rf"\begin{{tikzpicture}}[x=1pt,y=1pt,{style}]\draw (0,0) rectangle (10,200);\end{{tikzpicture}}"
+        packages = rf"\documentclass[10pt,a4paper]{{article}}\usepackage{{tikz}}{geometry}\parindent=0pt"
+        source = rf"{packages}\begin{{document}}{told}\par {plot}\end{{document}}"
+        pages.append(words_of(compiled(source), tmp_path, require_tool("pdftotext")).count("\f"))
+    assert pages == [1, 2]
+
+
 def test_tex_runs_no_program(require_tool: RequireTool, tmp_path: Path) -> None:
     require_tool("pdflatex")
     compiled(article(rf"x\immediate\write18{{touch {tmp_path}/owned}}"))

@@ -99,6 +99,13 @@ def test_systems_of_sympy_and_coefficients_are_plants(system: Any) -> None:
     assert (error.trace(), error.det()) == (-3, 2)
 
 
+def test_a_connection_that_is_given_as_a_function_has_its_repair() -> None:
+    parts = TransferFunction(1, s, s), TransferFunction(1, s + 1, s)
+    with pytest.raises(InputError, match="Series") as caught:
+        symobs.StateSpace.from_transfer_function(Series(*parts))
+    assert "where a plant is expected" in caught.value.repair
+
+
 def of_state(pole: int) -> SymPyStateSpace:
     """1/(s + pole) in state space."""
     return SymPyStateSpace(sympy.Matrix([[-pole]]), sympy.Matrix([[1]]), sympy.Matrix([[1]]), sympy.Matrix([[0]]))

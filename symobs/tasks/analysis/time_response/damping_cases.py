@@ -19,7 +19,6 @@ from symobs.exact.core.generators import (
     identities_at,
     substitute,
     symbols_in,
-    symbols_named,
 )
 from symobs.exact.time_functions.matrix_exponential import OpenBranch
 from symobs.formula.tree import Conjunction, Environment, Literal
@@ -159,9 +158,9 @@ class DampingCases(Result):
 
     @property
     def is_told_in_decimals(self) -> bool:
-        """Whether a sum over roots at an instant is a number in an answer."""
-        names = {name for value in self.matrices for name in value.names}
-        return any(isinstance(function_named(name), RootSum) and not symbols_named(name) for name in names)
+        """Whether a sum over the roots of a polynomial of numbers is in an answer: its modes have decimals alone."""
+        found = [function_named(name) for value in self.matrices for name in value.names]
+        return any(isinstance(function, RootSum) and function.is_rational for function in found)
 
     def everything(self) -> Iterator[Matrix | Scalar]:
         """Yield all functions of time on the page: those of the cases too."""

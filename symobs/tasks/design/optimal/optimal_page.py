@@ -273,10 +273,12 @@ def _tell_unknown(page: Builder, result: OptimalGain) -> bool:
 def _tell_digits(page: Builder, result: OptimalGain) -> None:
     """Write P and the gain in decimals: in so many that a box of the size of their last place is mapped into itself."""
     letter, digits = result.letter, result.decimals
-    is_matched = False
-    if page.plant.order <= _DRAWN_UP_TO and _tell_root_square(page, result):
+    is_short, is_matched = page.plant.order <= _DRAWN_UP_TO, False
+    if is_short and _tell_root_square(page, result):
         _tell_locus(page, *_problem(page, result)[2:])
         is_matched = _is_controllable(result) and _tell_unknown(page, result)
+    elif is_short:
+        _tell_pencil(page, *_problem(page, result))
     tables = {f"{name}_r": [[Fraction(entry) for entry in row] for row in digits[name]] for name in ("P", letter)}
     largest = max(abs(entry) for table in tables.values() for row in table for entry in row)
     fewest = max(_DIGITS - len(str(int(largest))), 1)
@@ -294,7 +296,7 @@ def _tell_digits(page: Builder, result: OptimalGain) -> None:
     pencil, plant = _pencil(page, result, page[f"{letter}_r"]), page.plant
     chi = page.define(f"chi_{letter}", pencil.apply("det"), silent=True)
     coefficients = chi.scalar.coefficients(plant.variable)
-    if is_matched and all(decimal_places(c) is not None for c in coefficients):  # others are too long to be read
+    if is_short and all(decimal_places(c) is not None for c in coefficients):  # others are too long to be read
         page.equal(relation(pencil.apply("det"), _in_decimals(page, chi.scalar)), say="optimal_loop_polynomial")
     found = stability(as_scalar(chi.value), plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
     P, gain = near["P_r"], result.turned(near[f"{letter}_r"])

@@ -18,6 +18,7 @@ from tests.support.problems.answers_with_roots import PROBLEMS, Problem, forms
 from tests.support.tools.command_line import inside
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
 SEED = "roots of letters"
@@ -86,9 +87,9 @@ def test_some_forms_are_right_and_some_near_misses_wrong() -> None:
 
 
 @pytest.mark.slow
-def test_two_hundred_forms_are_right_and_as_many_near_misses_wrong() -> None:
-    hold_forms(200)
-    hold_misses(200)
+@pytest.mark.parametrize("hold", [hold_forms, hold_misses], ids=["forms", "near misses"])
+def test_two_hundred_forms_are_right_and_as_many_near_misses_wrong(hold: Callable[[int], None]) -> None:
+    hold(200)
 
 
 @pytest.mark.slow

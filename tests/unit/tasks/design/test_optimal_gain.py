@@ -355,3 +355,12 @@ def test_a_gain_in_decimals_is_compared_with_the_factor_and_the_filter_is_writte
     assert f"= s³ + {first:.5f} s² + {second:.5f} s + {third:.0f}" in page
     assert "dx̂/dt = A x̂ + B u + L̂(y - C x̂)" in page
     assert "enters the state equation as G w" in page
+
+
+def test_a_page_in_digits_of_two_inputs_has_the_polynomial_of_the_hamiltonian_matrix() -> None:
+    A, B, Q, R = "[0 1 0; 0 0 1; 0 -2 -3]", "[0 0; 1 0; 0 1]", "diag(1, 1, 1)", "diag(1, 2)"
+    a, b = np.array([[0, 1, 0], [0, 0, 1], [0, -2, -3]]), np.array([[0, 0], [1, 0], [0, 1]])
+    H = np.block([[a, -b @ np.diag([1, 0.5]) @ b.T], [-np.eye(3), -a.T]])
+    np.testing.assert_allclose(np.poly(H), [1, 0, -6.5, 0, 19, 0, -10], atol=1e-9)
+    page = symobs.lqr(symobs.StateSpace(A, B), Q=Q, R=R).to("text")
+    assert "c(s) = det(sI - H) = s⁶ - (13/2)s⁴ + 19s² - 10" in page
