@@ -168,8 +168,32 @@ class BodePicture:
     delay: Fraction = Fraction(0)
 
 
+@dataclass
+class Branch:
+    """A piece of a branch of equilibria: the value of each signal as a function of the parameter, and points of the one drawn.
+
+    It is `stable` where the linearisation is asymptotically stable.
+    """
+
+    at: tuple[tuple[str, Scalar], ...]
+    points: tuple[Place, ...]
+    stable: bool
+
+
+@dataclass
+class BranchPicture:
+    """The values of a state at equilibria over a parameter; `marks` are branch points with the exact value of the parameter."""
+
+    axes: tuple[str, str]
+    states: tuple[str, ...]
+    window: tuple[Interval, Interval]
+    branches: tuple[Branch, ...]
+    marks: tuple[tuple[Place, Scalar], ...] = ()
+    discrete: bool = False
+
+
 #: What stands on a page, and is checked with it.
-Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse | NyquistPicture | BodePicture
+Picture: TypeAlias = RegionPicture | LinePicture | PoleMap | TimeResponse | NyquistPicture | BodePicture | BranchPicture
 #: A line through values that were rounded to binary numbers; values of a sweep are exact, what joins them is not.
 Run: TypeAlias = "tuple[tuple[float, float], ...]"
 

@@ -71,6 +71,21 @@ LETTERS: dict[str, LetterForm] = {
         f"A_e{k}": LetterForm(rf"A_{k}", f"A{'₀₁₂₃₄₅₆₇₈₉'[k]}", "matrix of the linearisation at an equilibrium")
         for k in range(1, 10)
     },
+    **{
+        f"{x}_e{k}": LetterForm(
+            rf"{x}_{k}^{{*}}" if x != "g" else f"g_{k}",
+            f"{x}{'' if x == 'g' else '*'}{'₀₁₂₃₄₅₆₇₈₉'[k]}",
+            f"{meaning} at an equilibrium",
+        )
+        for x, meaning in (("x", "states"), ("u", "inputs"), ("g", "what is left of f"))
+        for k in range(1, 10)
+    },
+    **{
+        f"chi_e{k}": LetterForm(
+            rf"\chi_{k}({{v}})", f"χ{'₀₁₂₃₄₅₆₇₈₉'[k]}({{v}})", f"characteristic polynomial of A_{k}"
+        )
+        for k in range(1, 10)
+    },
     "partial": LetterForm(r"\partial", "∂", "sign of a partial derivative"),
     "K": LetterForm("K", "K", "state feedback gain"),
     "L": LetterForm("L", "L", "observer gain"),

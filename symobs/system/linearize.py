@@ -31,7 +31,8 @@ from symobs.formula.expression import declared_name, parse_matrix, typed_name, w
 from symobs.formula.expression.source import shown
 from symobs.ground.errors import InputError, ShapeMismatch, together
 from symobs.system.conditions import sign_of
-from symobs.system.equilibria import Equilibria, Equilibrium, by_signs, equilibria, real_where
+from symobs.system.decided_signs import by_signs
+from symobs.system.equilibria import Equilibria, Equilibrium, equilibria, real_where
 from symobs.system.motion import (
     Motion,
     equations_of,
@@ -240,7 +241,7 @@ def at_equilibrium(
         return replace(given, equilibrium=tuple((name, point[name]) for name in names), positive=above), symbols
     found = all_equilibria(given, point, signs, is_discrete=is_discrete)
     generic = [point for point in found.points if not any(c.operator == "==" for c in point.conditions)]
-    if len(generic) != 1:
+    if len(generic) != 1 or generic[0].within is not None:
         raise _not_one(replace(found, points=tuple(generic or found.points)), given)
     (there,) = generic
     apart = tuple(c.expression for c in there.conditions if c.operator == "!=")
@@ -269,6 +270,13 @@ def _not_one(found: Equilibria, given: Nonlinear) -> InputError:
         message = f"the equilibrium has no closed form here: {shown(str(found.open_equations[0]), 80)} = 0"
         return InputError(message, where=where, repair="give values for which f(x, u) = 0")
     listed = "; ".join(told_point(point, given) for point in found.points)
+    if any(point.within is not None for point in found.points):
+        listed = "; ".join(told_point(point, given) for point in found.points)
+        message = f"an equilibrium has no closed form: {listed}"
+        repair = "ask for the task equilibria, which encloses it"
+        if given.inputs:
+            repair = "give a state that is exact, and leave the input out, which then follows"
+        return InputError(message, where=where, repair=repair)
     message = f"there are {len(found.points)} equilibria{'' if found.are_all else ' or more'}: {listed}"
     telling = next(
         (n for n in given.states + given.inputs if len({str(p.values.get(n)) for p in found.points}) > 1),
@@ -281,6 +289,8 @@ def _not_one(found: Equilibria, given: Nonlinear) -> InputError:
 def told_point(point: Equilibrium, given: Nonlinear) -> str:
     """Return a solution as a text: theta = pi, F = 0; free unknowns and rates, which are 0, are left out."""
     values = {n: v for n, v in point.values.items() if n not in point.free and not is_rate(n, given)}
+    if point.within is not None:
+        return ", ".join(f"{name} = {point.digits(name)}..." for name in values)
     text = ", ".join(f"{name} = {value}" for name, value in values.items())
     return text + (f" where {' and '.join(map(str, point.conditions))}" if point.conditions else "")
 

@@ -181,14 +181,18 @@ def equations_of(
             f"there {'is 1 equation' if len(found) == 1 else f'are {len(found)} equations'} for {', '.join(variables)}"
         )
         raise ShapeMismatch(message, where="plant.equations", repair="write one for each of them, no more")
+    derivatives = {rate_of(name, times) for name in variables for times in (1, 2)}
+    moving = [bool(symbols_in(equation) & derivatives) for equation in found]
+    for place, moves in enumerate(moving):
+        if not moves and any(moving):
+            message = "an equation without a derivative ties the variables together"
+            repair = "solve it for one of them, put that into the other equations, and leave both out"
+            raise InputError(message, where=f"plant.equations[{place}]", repair=repair)
     highest = tuple(_highest(name, found, orders) for name in variables)
     for place, equation in enumerate(found):
         if not symbols_in(equation) & set(highest):
-            message = "an equation without a derivative ties the variables together"
-            repair = "solve it for one of them, and leave both out"
-            if any(rate_of(name, times) in symbols_in(equation) for name in variables for times in (1, 2)):
-                message = "an equation has no highest derivative"
-                repair = f"write it with one of {', '.join(map(_shown, highest))}"
+            message = "an equation has no highest derivative"
+            repair = f"write it with one of {', '.join(map(_shown, highest))}"
             raise InputError(message, where=f"plant.equations[{place}]", repair=repair)
     return _checked(Motion(tuple(variables), found, highest, sides=sides), inputs)
 

@@ -202,6 +202,20 @@ def over_a_base(
     return moved, relations
 
 
+def _shifted(radicand: Scalar, signs: Mapping[str, str]) -> str:
+    """Return which letter to shift so that a radicand with one factor of open sign is seen to be positive; else nothing."""
+    unit, factors = radicand.factors()
+    open_factors = [(factor, power) for factor, power in factors if sign_of(factor, signs) != "positive"]
+    if len(open_factors) != 1 or open_factors[0][1] % 2 == 0:
+        return ""
+    factor = open_factors[0][0] if unit.fraction() > 0 else -open_factors[0][0]
+    for name in sorted(symbols_in(factor)):
+        lead, *rest = factor.coefficients(name) if factor.degree(name) == 1 else (Scalar.of(0),)
+        if rest and lead.is_constant and abs(lead.fraction()) == 1 and not rest[0].is_zero:
+            return f"{name} = {-rest[0] / lead} {'+' if lead.fraction() > 0 else '-'} d with d positive"
+    return ""
+
+
 def require_known(
     values: Sequence[Matrix | Scalar], signs: Mapping[str, str], where: str, *, in_time: bool = False
 ) -> frozenset[Function]:
@@ -227,6 +241,8 @@ def require_known(
                 raise InputError(f"{f.text} has no exact value here", where=where, repair=repair)
             if sign_of(f.argument, signs) != "positive":
                 repair = "declare signs for which its radicand is positive, or a symbol for the root"
+                if shifted := _shifted(f.argument, signs):
+                    repair = f"put {shifted}, or declare a symbol for the root"
                 raise InputError(f"{f.text} has no exact value here: it may not be real", where=where, repair=repair)
     roots = [f for f in functions | all_roots(*values) if f.kind == "sqrt"]
     if are_dependent([f.argument for f in roots]):

@@ -54,7 +54,7 @@ _COMMANDS |= {
     for name in GREEK
     if name.lower() != "lambda"
 }
-_SAID = {"det", "sin", "cos", "sinh", "cosh"}
+_SAID = {"det", "sin", "cos", "sinh", "cosh", "arccos", "arcsin", "arctan"}
 _UNSEEN = {"\u2061", "\u2062", "\xa0", " "}
 
 

@@ -26,7 +26,16 @@ import sympy
 from symobs.exact import EIGENVALUE, Matrix, Root, Scalar
 from symobs.exact.algebraic.root_sum import RootSum
 from symobs.exact.core.generators import PI, function_named, symbols_in
-from symobs.formula.figures import BodePicture, NyquistPicture, TimeResponse, figure_of, is_box, is_integrator, key
+from symobs.formula.figures import (
+    BodePicture,
+    BranchPicture,
+    NyquistPicture,
+    TimeResponse,
+    figure_of,
+    is_box,
+    is_integrator,
+    key,
+)
 from symobs.formula.phrases.languages import Counted, StateChoice
 from symobs.formula.tree import (
     Apply,
@@ -66,6 +75,7 @@ from symobs.proof.derivation import (
     Section,
     Tabulate,
 )
+from symobs.tasks.result.output_methods import to_sympy
 from tests.support.algebra import (
     CONTEXT,
     Series,
@@ -286,7 +296,7 @@ class World:
             case _:
                 raise TypeError(target)
 
-    def read(self, steps: Sequence[Step]) -> Iterator[tuple[str, Any]]:
+    def read(self, steps: Sequence[Step]) -> Iterator[tuple[str, Any]]:  # noqa: PLR0915 - one kind of step after another
         """Yield what the steps say as (kind, content), each read at this point; relations introduce first members."""
         for step in steps:
             match step:
@@ -321,6 +331,8 @@ class World:
                 case Plot(NyquistPicture() | BodePicture() as response, subject):
                     assert isinstance(subject, Quotient)
                     yield "=", Fraction(len(list(self.untrue_frequencies(response))))
+                case Plot(BranchPicture() as branches):
+                    yield "=", Fraction(len(list(untrue_branches(branches))))
                 case Plot(picture, subject):
                     yield "property stable", single(self.value(subject))
                     yield "=", Fraction(len(list(self.seen(picture, subject))))
@@ -721,6 +733,23 @@ def readings(derivation: Derivation, points: Sequence[Any] = range(POINTS), scal
 def is_true(derivation: Derivation) -> bool:
     """Tell whether every equation of a derivation holds at random points."""
     return all(content == 0 for reading in readings(derivation) for kind, content in reading if kind in {"=", "zero"})
+
+
+def untrue_branches(picture: BranchPicture) -> Iterator[str]:
+    """Yield the points of branches that do not lie, by SymPy's numbers, where their branch has them, or not in order."""
+    parameter, drawn = picture.axes
+    bottom, top = picture.window[1]
+    for branch in picture.branches:
+        (height,) = to_sympy([dict(branch.at)[drawn]], {})
+        places = [(sympy.Rational(x), sympy.Rational(y)) for x, y in branch.points]
+        if [x for x, _ in places] != sorted(x for x, _ in places):
+            yield "the order of points"
+        for x, y in places:
+            if abs(height.subs(sympy.Symbol(parameter), x).evalf(20) - y) > (top - bottom) / 200:
+                yield f"{x}"
+    for (x, _), exact in picture.marks:
+        if abs(to_sympy(exact, {}).evalf(20) - sympy.Rational(x)) > (picture.window[0][1] - picture.window[0][0]) / 200:
+            yield f"the mark at {x}"
 
 
 def still_true(changed: Derivation, original: Derivation) -> bool:

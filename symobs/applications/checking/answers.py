@@ -336,7 +336,7 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
         message = f"the answer is larger than {MAX_BYTES // 1024} kB"
         raise ProblemErrors((InputError(message, where=where, repair="hand in the answer alone"),))
     text = typed(given)
-    if re.match(r"\s*\{\s*[\"}]", text) or _TABLES.search(text):
+    if is_of_tables(text):
         data = parse(text, where)
         if text.lstrip().startswith("{") and not {"answer", "step"} & data.keys():  # values by name alone
             about = {key: value for key, value in data.items() if key in {"student", "convention", "symbols", "let"}}
@@ -345,6 +345,11 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
     found = without_latex(without_drawings(without_marks(text)))
     own, lines = text.splitlines(), found.splitlines()
     return _of_lines(found, where, own if len(own) == len(lines) else lines)
+
+
+def is_of_tables(text: str) -> bool:
+    """Return whether a text is a file of tables, TOML or JSON, and not one of lines."""
+    return bool(re.match(r"\s*\{\s*[\"}]", text) or _TABLES.search(text))
 
 
 def bare_value(text: str) -> str:

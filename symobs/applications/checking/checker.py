@@ -16,6 +16,7 @@ from symobs.applications.checking.answers import (
     MAX_BYTES,
     Answer,
     bare_value,
+    is_of_tables,
     plain,
     read_answer,
     states,
@@ -26,7 +27,9 @@ from symobs.applications.checking.faults import Explained, explain_gain, explain
 from symobs.applications.checking.folders import text_of_answer, text_of_path
 from symobs.applications.checking.handwriting import entries_of, fields_of, law_of, listed_of, with_own_letters
 from symobs.applications.checking.judgement import judge_task, rounds
+from symobs.applications.checking.motion_lines import without_motion
 from symobs.applications.checking.parts import OF_THE_PLANT, asked_of, exists, field_called, known_names, part_of_task
+from symobs.applications.checking.points import Reader
 from symobs.applications.checking.regions import read_conditions
 from symobs.applications.checking.report import SHOW, TO_BE_READ, CheckReport, Line, Part
 from symobs.exact import Factored, Matrix, Scalar
@@ -86,6 +89,8 @@ def example_of(view: ResultInConvention, field: str) -> str:
             text = f"({variable} + {first})^2" if variable in value.names else str(first)
             if str(value) != text:
                 return f"{letter} = {text}"
+    if (view.task, field) == ("equilibria", "points"):
+        return Reader(view).example
     if field == "stable_if":
         return (
             "1 < h and h < 2" if not (names := getattr(view.result.question, "parameters", ())) else f"{names[0]} > 1"
@@ -109,6 +114,8 @@ def _shape(right: Any, field: str) -> str:
         return "yes, no or conditional"
     if field == "stable_if":
         return "conditions: h1 > 3 and h2 > 0"
+    if field == "points":
+        return "all points, (x1, x2) = (1, 1), (2, 2)"
     return "a list" if isinstance(right, (list, tuple)) else "a value"
 
 
@@ -524,9 +531,21 @@ class Checked:
 
     def read(self, text: str, where: str = "answer") -> Answer:
         """Return the answer of a text: its lines, or the one value that is asked for; raises `ProblemErrors`."""
+        at_rest = next((view for view in self.views() if view.task == "equilibria"), None)
+        if self.problem.plant.nonlinear is not None and not is_of_tables(text):
+            steps, text = without_motion(text, self.problem.plant)
+            points, text = Reader(at_rest).lines_of(text) if at_rest is not None else ([], text)
+            if points or steps:
+                rest = read_answer(text, where) if text.strip() else Answer(loose=True)
+                listed = {"points": points} if points else {}
+                written = {**rest.written, **{name: "; ".join(value) for name, value in listed.items()}}
+                values = {**rest.values, **listed}
+                return replace(rest, values=values, written=written, steps=(*steps, *rest.steps))
         try:
             return read_answer(text, where)
         except ProblemErrors as errors:
+            if at_rest is not None:  # the reason why it is no list of points is told with that part
+                return Answer(values={at_rest.task: {"points": text}})
             asked = self.asked(self.views())
             for each in errors.errors:
                 if each.repair == EXAMPLE:
@@ -546,6 +565,8 @@ class Checked:
             return replace(self.read(text, "answer"), note=note)
         views = self.views()
         asked = self.asked(views)
+        if isinstance(answer, str) and self.problem.plant.nonlinear is not None and (len(asked) != 1 or states(answer)):
+            return self.read(answer)
         if isinstance(answer, Mapping) or (isinstance(answer, str) and (len(asked) != 1 or states(answer))):
             return read_answer(answer)
         if len(asked) != 1:

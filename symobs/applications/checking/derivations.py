@@ -15,6 +15,7 @@ from symobs.applications.audit.evaluation import Misfit, common, equal, value_of
 from symobs.applications.audit.slips import SearchBudget
 from symobs.applications.checking.answers import Answer, Step, as_conditions, as_value, has_decimals, read_like
 from symobs.applications.checking.handwriting import EIGENVALUES, in_letters, named_entries
+from symobs.applications.checking.motion_lines import of_motion
 from symobs.applications.checking.parts import OF_THE_PLANT, exists, field_called, is_of_time, part_of_task
 from symobs.applications.checking.regions import (
     SOME_PIECES,
@@ -352,6 +353,8 @@ def is_of_conditions(relation: str) -> bool:
 
 def _judged(state: _Derivation, step: Step, answer: Answer) -> Line:
     """Return a line with its verdict."""
+    if (line := of_motion(step.relation, state.problem.plant)) is not None:
+        return replace(line, where=step.where)
     written, variable = step.relation, state.problem.plant.variable
     names = {*state.problem.plant.symbols.signs, *state.symbols, variable}
     step = replace(step, relation=in_letters(written, names, variable))

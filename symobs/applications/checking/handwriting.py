@@ -117,6 +117,7 @@ _BEFORE_MATRIX = re.compile(r"(?<![\w.)/^])(\d+/\d+)\s*\*?\s*(?=\[)")
 _LONGEST_PRODUCT = 20
 _WORDS_OF_LINES = {"rank", "det", "adj", "exp", "where", "and", "or", "yes", "no", "trace"}
 _NAME = re.compile(r"(?<![A-Za-z_.])[A-Za-z][A-Za-z0-9_]*(?![A-Za-z0-9_(])")
+_BEFORE_BRACKET = re.compile(r"(?<![A-Za-z_.])[A-Za-z]\w*_?\d+(?=\()")
 _EXPONENTIAL = re.compile(
     r"(?<![A-Za-z_])e\s*\^\s*(\((?:[^()]|\([^()]*\))*\)|-?\s*[A-Za-z0-9.]+(?![A-Za-z0-9_.]))(?!\s*\^)"
 )
@@ -221,6 +222,7 @@ def in_letters(text: str, names: Collection[str], variable: str) -> str:
     text = _TOGETHER.sub(lambda found: found[0] if found[0] in names else "*".join(found[0]), text)
     text = _INDEXED.sub(declared, text)
     text = _NAME.sub(lambda found: _as_product(found[0], names), text)
+    text = _BEFORE_BRACKET.sub(lambda found: _before_bracket(found[0], names), text)
     text = _DECIMAL_FACTOR.sub(r"\1*", text)
     for other in {"p", "lambda", "λ"} - {*names}:
         if not re.search(rf"(?<![A-Za-z_]){variable}(?![A-Za-z0-9_])", text):
@@ -240,6 +242,12 @@ def _as_product(word: str, names: Collection[str]) -> str:
                 partings[place] += [[name, *rest] for rest in partings[place + len(spelt)]]
         del partings[place][2:]
     return "*".join(partings[0][0]) if len(partings[0]) == 1 else word
+
+
+def _before_bracket(word: str, names: Collection[str]) -> str:
+    """Return names with an index that are written together before a bracket, lm_1(2l - g), as factors of it."""
+    product = _as_product(word, names)
+    return word if product == word else f"{product}*"
 
 
 def _quotient(found: re.Match[str]) -> str:

@@ -15,6 +15,7 @@ from symobs.applications.checking.answers import (
     read_like,
 )
 from symobs.applications.checking.coordinates import Replaced, closes_the_loop, in_coordinates
+from symobs.applications.checking.equilibria import Judge
 from symobs.applications.checking.parts import (
     as_asked,
     exists,
@@ -22,7 +23,7 @@ from symobs.applications.checking.parts import (
     shape_of,
     two_readings,
 )
-from symobs.applications.checking.regions import region_verdict
+from symobs.applications.checking.regions import Separation, region_verdict
 from symobs.applications.checking.rounded import entries_are_right, in_enough_digits, is_as_stable, poles_are_right
 from symobs.applications.checking.wording import verdict_of
 from symobs.applications.grader.claims import WORDS as VERDICTS
@@ -38,9 +39,9 @@ from symobs.problem.landmarks import LANDMARKS
 from symobs.tasks.result.in_convention import ResultInConvention
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
-    from symobs.applications.checking.regions import Separation
+    from symobs.applications.checking.equilibria import PointsVerdict
     from symobs.problem.fields import Marking
     from symobs.tasks.result import Result
 
@@ -158,6 +159,8 @@ def judge_task(
             if parts[name].verdict == "wrong" and parts[name].value is not None:
                 task.leads[name], task.wrong = parts[name].value, (*task.wrong, name)
                 _follow(task)
+    if view.task == "equilibria":
+        parts |= _points(task, asked)
     parts |= _in_coordinates(task, [part for part in each if part.name in task.right.in_coordinates])
     parts |= {name: _judged(task, part) for name, part in asked.items() if name not in parts}
     return TaskJudgement((*(parts[name] for name in asked), *unread), task.right, task.own)
@@ -515,6 +518,36 @@ def _is_open(task: _Task, result: Result, part: Judged) -> bool:
     except InputError:
         return False
     return False
+
+
+# -- equilibria -------------------------------------------------------------------------------------------------------
+
+
+def _points(task: _Task, asked: dict[str, Judged]) -> dict[str, Judged]:
+    """Return the verdicts on points and on their stability, which may stand behind the points."""
+    judge, parts = Judge(task.view, task.marking), dict[str, Judged]()
+    if "points" in asked:
+        parts["points"] = _held(judge.points, asked["points"])
+        if parts["points"].verdict != "unreadable":
+            read = "; ".join(dict.fromkeys(map(str, judge.read)))
+            parts["points"] = replace(parts["points"], given=read or "none")
+            if "stable" not in asked and (said := judge.stability_said) is not None:
+                asked["stable"] = Judged("stable", "stable", "wrong", said, own=said)
+    if "stable" in asked:
+        parts["stable"] = _held(judge.stability, asked["stable"])
+    return parts
+
+
+def _held(judged: Callable[[Any], PointsVerdict], part: Judged) -> Judged:
+    try:
+        found = judged(part.given)
+    except UNDECIDED as error:
+        return replace(part, verdict="undecided", reason=str(error))
+    except SymobsError as error:
+        return _unreadable(part, error)
+    if found.verdict == "wrong":
+        return replace(part, separation=Separation("wrong", slip=found.slip), reason=found.reason)
+    return replace(part, verdict=found.verdict, reason=found.reason)
 
 
 # -- regions ----------------------------------------------------------------------------------------------------------

@@ -31,6 +31,8 @@ def as_asked(view: ResultInConvention, letter: str, value: Any) -> Any:
     if isinstance(value, str) and (inside := value_of(letter, value)) != value:
         value = as_value(inside)
     name = view.standard(letter)[0]
+    if view.task == "equilibria" and name in {"points", "stable"}:
+        return value
     if name == "conditions" or (name == "stable_if" and not hasattr(view.result, "critical")):
         return as_conditions(value)
     if isinstance(value, str):

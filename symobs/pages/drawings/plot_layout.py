@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, assert_never
 from symobs.exact import Scalar
 from symobs.formula.figures import (
     BodePicture,
+    BranchPicture,
+    End,
     LinePicture,
     NyquistPicture,
     PoleMap,
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.formula.figures import Drawn, End, Interval, PlottedResponse, Run
+    from symobs.formula.figures import Drawn, Interval, PlottedResponse, Run
     from symobs.formula.phrases.languages import Language
     from symobs.formula.tree import Formula
     from symobs.pages.drawings.scene import Content, Measure, Point
@@ -78,6 +80,8 @@ def _scene(picture: Drawn, measure: Measure) -> Scene:
             return _nyquist(picture, measure)
         case BodePicture():
             return _bode(picture, measure)
+        case BranchPicture():
+            return _branches(picture, measure)
         case SweepCurves():
             return _curves(picture, measure)
         case SweepMap():
@@ -292,6 +296,26 @@ def _nyquist(picture: NyquistPicture, measure: Measure) -> Scene:
         for run in frame.lines(places if sign > 0 else reversed(places)):
             strokes.append(Stroke(run, style))
             signs += _arrows(run)
+    return Scene(frame.box, whole_of(strokes, texts, measure), (), tuple(strokes), (), tuple(signs), tuple(texts))
+
+
+def _branches(picture: BranchPicture, measure: Measure) -> Scene:
+    """Return a state over a parameter, full where it is stable, the branch points with their values above the frame."""
+    frame = _frame_of(picture.window)
+    axes, texts = _axes(frame, (symbol(picture.axes[0]), symbol(picture.axes[1])), measure)
+    strokes = [*(Stroke(line, "zero") for line in _zero_lines(frame)), *axes]
+    signs, right = list[Sign](), frame.at(*(end[0] for end in picture.window))[0] + measure("0")[1]
+    for place, value in sorted(picture.marks, key=lambda mark: mark[0][0]):
+        x, y = frame.at(*place)
+        signs.append(Sign("ring", (x, y)))
+        strokes.append(Stroke(((x, 0), (x, frame.height)), "zero"))
+        label = _label(End(place[0], value), measure)
+        width, _ = measure(label)
+        if x - width / 2 > right:
+            texts.append(TextLabel(label, (x, frame.height + _LETTER), "south"))
+            right = x + width / 2 + _LETTER
+    for branch in picture.branches:
+        strokes += [Stroke(run, "path" if branch.stable else "estimate 2") for run in frame.lines(branch.points)]
     return Scene(frame.box, whole_of(strokes, texts, measure), (), tuple(strokes), (), tuple(signs), tuple(texts))
 
 

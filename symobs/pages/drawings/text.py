@@ -7,7 +7,15 @@ from itertools import pairwise
 from math import floor, inf
 from typing import TYPE_CHECKING, assert_never
 
-from symobs.formula.figures import BodePicture, LinePicture, NyquistPicture, PoleMap, RegionPicture, TimeResponse
+from symobs.formula.figures import (
+    BodePicture,
+    BranchPicture,
+    LinePicture,
+    NyquistPicture,
+    PoleMap,
+    RegionPicture,
+    TimeResponse,
+)
 from symobs.formula.tree import Conjunction, Formula, Literal
 from symobs.pages.drawings.curve_labels import contains
 from symobs.pages.drawings.diagram_layout import Metrics, diagram_scene
@@ -59,6 +67,8 @@ def sketch(item: Drawing | Picture, printer: TextPrinter, width: int) -> str:
             return _nyquist(item, printer)
         case BodePicture():
             return _bode(item, printer)
+        case BranchPicture():
+            return _branches(item, printer)
         case _:
             assert_never(item)
 
@@ -128,6 +138,18 @@ def _nyquist(picture: NyquistPicture, printer: TextPrinter) -> str:
             _put(grid, picture.window, place, "*")
     _put(grid, picture.window, (Fraction(-1), Fraction(0)), "x")
     return _framed(grid, picture.window, [symbol("Re"), symbol("Im")], printer)
+
+
+def _branches(picture: BranchPicture, printer: TextPrinter) -> str:
+    """Return the grid of equilibria over a parameter: `*` where they are stable, `.` where not, `o` at branch points."""
+    grid = _grid(picture.window, lambda _x, _y: " ")
+    for branch in picture.branches:
+        for (x, y), (u, v) in pairwise(branch.points):
+            for k in range(9):
+                _put(grid, picture.window, (x + (u - x) * k / 8, y + (v - y) * k / 8), "*" if branch.stable else ".")
+    for place, _ in picture.marks:
+        _put(grid, picture.window, place, "o")
+    return _framed(grid, picture.window, [*map(symbol, picture.axes)], printer)
 
 
 def _bode(picture: BodePicture, printer: TextPrinter) -> str:

@@ -9,6 +9,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.formula.convention import STANDARD
 from symobs.formula.figures import (
     BodePicture,
+    BranchPicture,
     LinePicture,
     NyquistPicture,
     PoleMap,
@@ -118,6 +119,10 @@ def _sentences(picture: Drawn) -> Iterator[Sentence]:
                 yield caption_sentence("indented")
         case BodePicture(discrete=discrete):
             yield caption_sentence("bode_discrete" if discrete else "bode")
+        case BranchPicture(axes=(parameter, state)):
+            yield caption_sentence("branches", parameter=symbol(parameter), state=symbol(state))
+            if values := tuple(dict.fromkeys(_equation(parameter, value) for _, value in picture.marks)):
+                yield caption_sentence("branch_points", values=Conjunction(values))
         case SweepCurves(points=count, columns=columns, infinite=infinite):
             yield caption_sentence("sweep", count=number(count))
             for column in infinite:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, apart_from_zero, from_coefficients, remainder
 from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
-from symobs.exact.core.generators import function_named, identities, substitute, symbols_named
+from symobs.exact.core.generators import all_roots, function_named, identities, substitute, symbols_named
 from symobs.formula.tree import Conjunction, Environment, Exact, Relation, evaluate
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.ground.errors import DerivationRejected, WrongKind
@@ -45,14 +45,18 @@ def _lowered(polynomial: Scalar, environment: Environment) -> Scalar:
     try:
         ideal = Ideal.where(environment.relations)
         vanishing = (c.numerator in ideal and c.denominator not in ideal for c in coefficients)
-        kept = [
-            Scalar.of(0) if is_zero else ideal.simplified(c) for c, is_zero in zip(coefficients, vanishing, strict=True)
-        ]
+        kept = [Scalar.of(0) if zero else _shorter(c, ideal) for c, zero in zip(coefficients, vanishing, strict=True)]
     except TooLarge:
         if not coefficients[0].is_constant:
             raise
         return polynomial
     return from_coefficients(kept, environment.variable) if any(kept) else polynomial
+
+
+def _shorter(value: Scalar, ideal: Ideal) -> Scalar:
+    """Return a value as the relations shorten it, not by square roots that it has not."""
+    found = ideal.simplified(value)
+    return value if all_roots(found) - all_roots(value) else found
 
 
 def _divided(value: Scalar, environment: Environment) -> tuple[Scalar, Scalar] | None:

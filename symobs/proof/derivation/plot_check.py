@@ -13,15 +13,26 @@ from math import comb, degrees, lcm, log10, tau
 from operator import mul
 from typing import TYPE_CHECKING, NamedTuple
 
-from symobs.exact import Matrix, Scalar, product_of
+from symobs.exact import EIGENVALUE, Matrix, Scalar, product_of
+from symobs.exact.algebraic.enclosure import near as enclosed
 from symobs.exact.algebraic.enclosure import sign_of_number
 from symobs.exact.algebraic.root_location import shifted, value_at
+from symobs.exact.core.generators import derivative
 from symobs.exact.core.matrix import whole_product
-from symobs.formula.figures import BodePicture, LinePicture, NyquistPicture, PoleMap, RegionPicture, TimeResponse
+from symobs.formula.figures import (
+    BodePicture,
+    BranchPicture,
+    LinePicture,
+    NyquistPicture,
+    PoleMap,
+    RegionPicture,
+    TimeResponse,
+)
 from symobs.formula.tree import Block, Derivative, Exact, Letter, Literal, Product, Relation, Signal, evaluate
 from symobs.proof.certificate.claims import as_scalar, verify
 from symobs.proof.derivation.facts import polynomial_of
 from symobs.proof.derivation.figures_check import ALLOWS, Stability, faults_of_region, within, written
+from symobs.stability.criteria.stability import stability
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -160,6 +171,12 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
         else:
             yield "the dead time"
         return
+    if isinstance(picture, BranchPicture):
+        if picture.discrete == discrete:
+            yield from faults_of_branches(picture, evaluate(subject, environment, Exact(environment)))
+        else:
+            yield "another time"
+        return
     numbers = dict(picture.drawn_for)
     for name, value in numbers.items():
         if not value.is_constant or not ALLOWS[environment.signs.get(name, "real")](value.fraction()):
@@ -181,6 +198,53 @@ def faults(picture: Picture, subject: Formula, environment: Environment, *, disc
             yield from _of_line(picture, test)
         case _:
             yield from faults_of_poles(picture, polynomial, variable, discrete=discrete)
+
+
+# Check of branches of equilibria: at each point f is 0 there, and every few of them the linearisation is as it is told.
+
+
+#: At every so many points of a branch the stability is decided again.
+_EVERY = 6
+#: What is 0 is so to this many bits.
+_BITS_OF_ZERO = 40
+
+
+def faults_of_branches(picture: BranchPicture, f: object) -> Iterator[str]:
+    """Yield the faults of branches of equilibria of f."""
+    name, drawn = picture.axes
+    if not isinstance(f, Matrix) or f.shape != (len(picture.states), 1):
+        yield f"the states are {', '.join(picture.states)}"
+        return
+    slopes = Matrix.block([[derivative(f, state) for state in picture.states]])
+    near = (picture.window[1][1] - picture.window[1][0]) * _NEAR / 8
+    for branch in picture.branches:
+        for k, (value, height) in enumerate(branch.points):
+            numbers = {name: Scalar.of(value)}
+            there = {**numbers, **{key: each.substitute(numbers) for key, each in branch.at}}
+            found = enclosed(there[drawn], _BITS_OF_ZERO)
+            if found is None or abs(found - height) > near or not within((value, height), picture.window):
+                yield f"{written((value, height))} lies on a branch"
+            at_rest = [there[x] for x in picture.states] if picture.discrete else [Scalar.of(0)] * len(picture.states)
+            if not all(_is_small(entry.substitute(there) - x) for entry, x in zip(f.entries, at_rest, strict=True)):
+                yield f"the plant rests at {written((value, height))}"
+            if k % _EVERY == _EVERY // 2:
+                polynomial = slopes.substitute(there).characteristic_polynomial(EIGENVALUE)
+                verdict = stability(polynomial, EIGENVALUE, {}, discrete=picture.discrete).verdict
+                if verdict != ("yes" if branch.stable else "no"):
+                    yield f"{name} = {value} is {'' if branch.stable else 'not '}stable there"
+        if len(branch.points) < _EVERY or sorted(branch.points) != list(branch.points):
+            yield f"{len(branch.points)} points are a branch"
+    for (value, height), exact in picture.marks:
+        found = enclosed(exact, _BITS_OF_ZERO)
+        across = (picture.window[0][1] - picture.window[0][0]) * _NEAR
+        if found is None or abs(found - value) > across or not within((value, height), picture.window):
+            yield f"{exact} is {value}"
+
+
+def _is_small(value: Scalar) -> bool:
+    """Return whether a number is 0 as far as it is drawn."""
+    found = enclosed(value, _BITS_OF_ZERO)
+    return found is not None and abs(found) < Fraction(1, 2 ** (_BITS_OF_ZERO // 2))
 
 
 # Check of frequency responses: the value of the loop at each place, found exactly; places on the boundary, or outside.

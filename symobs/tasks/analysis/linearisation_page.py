@@ -8,7 +8,7 @@ from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import PIECES, all_roots, functions_in, substitute
 from symobs.formula.tree import At, Block, Derivative, Letter, Literal, SymbolList
 from symobs.proof.derivation.builder import relation
-from symobs.system.equilibria import by_signs
+from symobs.system.decided_signs import by_signs
 from symobs.tasks.analysis.motion_page import state_motion
 
 if TYPE_CHECKING:

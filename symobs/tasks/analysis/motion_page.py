@@ -29,7 +29,6 @@ def state_motion(page: Builder, motion: Motion) -> None:
     solved = Matrix.column([simplified(value) for value in M.solve(-rest).entries])
     page.in_time(M, rest, solved, *motion.equations, *motion.energies)
     w = Matrix.column([page.name_coefficient(*pair) for pair in zip(motion.highest, solved.entries, strict=True)])
-    page.set("M_q", M)
     several = len(motion.equations) > 1
     if motion.kinetic is not None:
         _tell_energies(page, motion)
@@ -41,6 +40,7 @@ def state_motion(page: Builder, motion: Motion) -> None:
         sides = (relation(left, right) for left, right in motion.sides)
         page.equal(*sides, say="equations_of_motion", coordinates=SymbolList(motion.coordinates))
     if any(not M[i, j].is_zero for i in range(len(w.entries)) for j in range(len(w.entries)) if i != j):
+        page.set("M_q", M)
         determinant = simplified(M.determinant())
         page.equal(relation(page["M_q"], M), relation(page("det(M_q)"), determinant), say="mass_determinant")
         page.remark("solved_for_highest", derivatives=SymbolList(motion.highest))

@@ -413,16 +413,16 @@ def hidden_polynomial(page: Builder, name: str = "X") -> Term:
 
 def say_stability(page: Builder, about: Term) -> None:
     """Say whether the polynomial that a term means is stable, or exactly where."""
-    plant = page.plant
+    plant, signs = page.plant, {**page.plant.symbols.signs, **page.environment.signs}
     polynomial = polynomial_of(about.scalar.substitute(page.environment.coefficients), page.environment)
-    found = stability(polynomial, plant.variable, plant.symbols.signs, discrete=plant.is_discrete)
+    found = stability(polynomial, plant.variable, signs, discrete=plant.is_discrete)
     time = "discrete" if plant.is_discrete else "continuous"
     if found.verdict == "yes":
         page.conclude(f"stable_{time}", predicate("stable", about))
     elif found.verdict == "no":
         page.conclude(f"unstable_{time}", predicate("unstable", about))
     else:
-        inequalities = [as_inequality(value, plant.symbols.signs) for value in found.positive]
+        inequalities = [as_inequality(value, signs) for value in found.positive]
         where = tuple(relation(left, operator, right) for left, operator, right in inequalities)
         page.conclude(f"stable_if_{time}", where=HoldsExactlyWhere(predicate("stable", about), where))
 

@@ -315,7 +315,7 @@ def lines_of(derivation: Derivation) -> list[Line]:
 def _opened(steps: tuple[Step, ...]) -> Iterator[Step]:
     for step in steps:
         if isinstance(step, Section):
-            assert not slots_of(step.title.key)
+            assert all(isinstance(slot, str) for _, slot in step.title.slots)
             yield from _opened(step.steps)
         else:
             yield step

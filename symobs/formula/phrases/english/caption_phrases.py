@@ -25,6 +25,8 @@ PHRASES: dict[str, str] = {
     "picture_samples_only": "The signals are defined at the sampling instants 0, 1, 2, … only.",
     "picture_nyquist": "Frequency response of the loop in the complex plane, solid for positive and dashed for negative frequencies. Cross: −1.",
     "picture_indented": "Poles on the boundary of stability are passed on its unstable side, so that the curve is closed.",
+    "picture_branches": "Equilibria {state} over {parameter}: full where the linearisation is asymptotically stable, dashed where it is not.",
+    "picture_branch_points": "Rings: branch points, at {values}.",
     "picture_bode": "Modulus of the loop in decibels and phase in degrees over the frequency.",
     "picture_bode_discrete": "Modulus of the loop in decibels and phase in degrees over the angle on the unit circle.",
     "picture_sweep": "Checked values at {count} points, joined by straight lines.",

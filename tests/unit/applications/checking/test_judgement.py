@@ -55,7 +55,7 @@ def test_our_own_answer_is_right_in_every_worked_example() -> None:
 
 
 #: A sequence as a column, and cos 2√… without brackets.
-_NOT_WRITTEN_SO = {"minimum_energy_sequence", "pendulum_gramian", "trolley_with_load"}
+_NOT_WRITTEN_SO = {"minimum_energy_sequence", "pendulum_gramian"}
 
 
 def _printed(checked: Checked) -> Iterator[tuple[str, str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -84,3 +85,17 @@ def test_a_rocket_with_air_resistance_flies_on() -> None:
     )
     assert sp.Matrix([-2 * sp.sqrt(2)]) == plant.A
     assert "sgn" in symobs.characteristic_polynomial(plant).to("text")
+
+
+@pytest.mark.parametrize(
+    ("radicand", "repair"), [("r - 1", "put r = 1 + d with d positive"), ("2 - r", "put r = 2 - d with d positive")]
+)
+def test_a_root_of_open_sign_says_which_letter_to_shift(radicand: str, repair: str) -> None:
+    with pytest.raises(InputError, match=re.escape(repair)):
+        symobs.linearize(
+            f"[y; -x*y - x + sqrt({radicand})*x + u]",
+            states="x, y",
+            inputs="u",
+            equilibrium={"x": 0, "y": 0, "u": 0},
+            symbols={"r": "positive"},
+        )
