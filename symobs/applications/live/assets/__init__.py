@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -13,6 +14,9 @@ SCHEMA, MOST_BYTES = "symobs-live/1", 64 * 1024
 ASSETS = Path(__file__).parent
 #: The style of derivations, read where it lies: who hands out pages need not import what writes them.
 _OF_DOCUMENTS = ASSETS.parents[2] / "pages" / "formats" / "html_body.css"
+#: The modules of the script, each behind those that it imports, and how it imports them.
+MODULES = ("numbers.js", "link.js", "elements.js", "curves.js", "symobs-live.js")
+_IMPORT = re.compile(r'^import \{[^}]*\} from "\./[a-z-]+\.js";\n', re.MULTILINE)
 #: The phrases that the script shows.
 _PREFIX = "live_"
 
@@ -35,9 +39,9 @@ def language_asked(request: object) -> Language:
 
 
 def script() -> str:
-    """Return the script, which begins with the words of no language."""
-    text = (ASSETS / "symobs-live.js").read_text(encoding="utf-8")
-    return f"{text}Object.assign(LANGUAGES, {json.dumps(words(), ensure_ascii=False)});\n"
+    """Return the script as one module, which begins with the words of no language."""
+    parts = [_IMPORT.sub("", (ASSETS / name).read_text(encoding="utf-8")) for name in MODULES]
+    return f"{''.join(parts)}Object.assign(LANGUAGES, {json.dumps(words(), ensure_ascii=False)});\n"
 
 
 def style() -> str:

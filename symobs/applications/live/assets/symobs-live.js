@@ -2,15 +2,13 @@
 // The front-end of symobs live: it draws what it is told and computes no mathematics. A pointer is snapped to a grid of
 // rationals and sent as exact text; whatever is shown came from Python, where it was checked.
 
+import { cells, handles, imaginary, matrix, numberOf, parts, plus, poles, ratio, rational, settled, text, value, written } from "./numbers.js";
+import { DETAILS, PANELS, PLANT, SNAPS, decoded, encoded } from "./link.js";
+import { PLUS, SUB, h, sv, ticks } from "./elements.js";
+import { drawCurves, drawLoop } from "./curves.js";
+
 const SCHEMA = "symobs-live/1", GRID = 20, REST = 250, BUSY = 150, LONGEST = 8000;
-const SVG = "http://www.w3.org/2000/svg";
-const SNAPS = { "1/20": 1, "1/10": 2, "1/4": 5, "1/2": 10, 1: 20 };
-const SHORT = { control: "control_poles", observer: "observer_poles", order: "observer" };
-const PLANT = ["A", "B", "C", "D", "transfer_function", "dt", "delay", "pade"];
-const OWN = ["v", "task", "symbols", "convention", "language", "at", "snap", "closed", "detail", "x0", "xh0", "step", "goal"];
 const GOALS = ["settling", "overshoot", "gain", "phase"], MOST_PINNED = 3;
-const DETAILS = ["full", "outline", "answer"];
-const PANELS = ["plane", "responses", "loop", "cards", "cases", "region", "page"];
 
 /** The words of each language by its code; whoever hands out this file puts them in. @type {Record<string, Record<string, string>>} */
 export const LANGUAGES = {};
@@ -28,145 +26,6 @@ export const http = (token) => async (body, signal) => {
   return got.json();
 };
 
-// -- exact numbers of a grid: [numerator, denominator] --
-
-const gcd = (a, b) => (b ? gcd(b, a % b) : Math.abs(a));
-const ratio = (n, d = 1) => { const g = gcd(n, d) || 1; return d < 0 ? [-n / g, -d / g] : [n / g, d / g]; };
-const plus = (a, b) => ratio(a[0] * b[1] + b[0] * a[1], a[1] * b[1]);
-const value = (a) => a[0] / a[1];
-const text = (a) => (a[1] === 1 ? `${a[0]}` : `${a[0]}/${a[1]}`);
-
-/** Read a rational number; null for anything else. @param {string} source */
-function rational(source) {
-  const found = /^([+-]?)\s*(\d+)(?:\/(\d+)|\.(\d+))?$/.exec(source.trim());
-  if (!found || source.length > 15) return null;
-  const [, sign, whole, below, digits] = found;
-  const number = digits ? ratio(Number(whole + digits), 10 ** digits.length) : ratio(Number(whole), Number(below ?? 1));
-  return number[1] ? (sign === "-" ? ratio(-number[0], number[1]) : number) : null;
-}
-
-/** Split at commas outside of parentheses. @param {string} source */
-function parts(source) {
-  const found = [""];
-  let depth = 0;
-  for (const c of source.replace(/^\s*\[|\]\s*$/g, "")) {
-    depth += c === "(" ? 1 : c === ")" ? -1 : 0;
-    if ((c === "," || c === ";") && depth === 0) found.push("");
-    else found[found.length - 1] += c;
-  }
-  return found.map((part) => part.trim()).filter(Boolean);
-}
-
-/** Read poles: handles {re, im}, a pair once, and texts that no handle can hold. @param {string} source */
-function handles(source) {
-  const waiting = parts(source).map((entry) => {
-    const plain = entry.replace(/\s+/g, "").replace(/−/g, "-").replace(/(^|[+-])[ij]\*?([\d./]+)$/, "$1$2i");
-    const real = rational(plain);
-    if (real) return { re: real, im: [0, 1] };
-    const found = /^([+-]?[\d./]+(?=[+-]))?([+-]?[\d./]*)\*?[ij]$/.exec(plain);
-    if (!found) return { raw: entry };
-    const re = rational(found[1] ?? "0"), im = rational(/\d/.test(found[2]) ? found[2] : `${found[2]}1`);
-    return re && im ? { re, im } : { raw: entry };
-  });
-  const kept = [];
-  while (waiting.length) {
-    const one = waiting.shift();
-    if (one.raw || one.im[0] === 0) { kept.push(one); continue; }
-    const other = waiting.findIndex((p) => !p.raw && text(p.re) === text(one.re) && p.im[0] === -one.im[0] && p.im[1] === one.im[1]);
-    if (other < 0) { kept.push({ raw: written(one) }); continue; }
-    waiting.splice(other, 1);
-    kept.push({ re: one.re, im: ratio(Math.abs(one.im[0]), one.im[1]), pair: true });
-  }
-  return kept;
-}
-
-const imaginary = (im, space = "") => `${text(im)}${space}i`.replace(/^(-?)1 ?i$/, "$1i");
-
-function written(p) {
-  if (p.raw) return p.raw;
-  if (!p.pair) return p.im[0] ? `${p.re[0] ? text(p.re) : ""}${p.im[0] > 0 && p.re[0] ? "+" : ""}${imaginary(p.im)}` : text(p.re);
-  if (!p.im[0]) return `${text(p.re)}, ${text(p.re)}`;
-  const re = p.re[0] ? text(p.re) : "";
-  return `${re}${re ? "+" : ""}${imaginary(p.im)}, ${re}-${imaginary(p.im)}`;
-}
-
-const poles = (list) => list.map(written).join(", ");
-const settled = (list) => list.flatMap((p) => (p.pair && !p.im[0] ? [{ re: p.re, im: [0, 1] }, { re: p.re, im: [0, 1] }] : [p]));
-
-// -- matrices as grids of fields --
-
-/** Split a matrix into cells; null where rows differ. @param {string} source */
-function cells(source) {
-  const inside = String(source).trim().replace(/^\[|\]$/g, "");
-  const rows = inside.split(/[;\n]/).map((row) => {
-    const found = [""];
-    let depth = 0;
-    [...row.trim()].forEach((c, k, all) => {
-      depth += c === "(" ? 1 : c === ")" ? -1 : 0;
-      const before = all.slice(0, k).join("").trimEnd().slice(-1), after = all.slice(k).join("").trimStart();
-      const joins = /[-+*/^]/.test(before) || /^[*/^]/.test(after) || /^[-+]\s/.test(after);
-      if (depth === 0 && (c === "," || (/\s/.test(c) && !joins))) { if (found[found.length - 1]) found.push(""); }
-      else if (!/\s/.test(c) || depth) found[found.length - 1] += c;
-    });
-    return found.filter(Boolean);
-  });
-  return rows.every((row) => row.length === rows[0].length && row.length) ? rows : null;
-}
-const matrix = (rows) => `[${rows.map((row) => row.map((c) => (/\s/.test(c.replace(/\(.*\)/g, "")) ? `(${c})` : c || "0")).join(" ")).join("; ")}]`;
-
-// -- state in a link --
-
-/** @param {string} link */
-function decoded(link) {
-  const given = Object.fromEntries(new URLSearchParams(link.replace(/^#/, "").replace(/\+/g, "%2B")));
-  const state = { task: given.task ?? "", plant: {}, spec: {}, symbols: {}, at: {}, convention: given.convention ?? "", language: given.language ?? "" };
-  const listed = (source) => Object.fromEntries((source ?? "").split(",").filter(Boolean).map((e) => e.split(/:(.*)/s)).map(([name, entry = ""]) => [name, entry.replace(/%2C/g, ",")]));
-  Object.assign(state, { symbols: listed(given.symbols), at: listed(given.at), goal: listed(given.goal) });
-  Object.assign(state, { snap: given.snap in SNAPS ? given.snap : "1/2", closed: (given.closed ?? "loop").split(",").filter((name) => PANELS.includes(name)) });
-  Object.assign(state, { detail: DETAILS.includes(given.detail) ? given.detail : "full", x0: given.x0 ?? "", xh0: given.xh0 ?? "", step: given.step ?? "" });
-  for (const [key, entry] of Object.entries(given)) {
-    if (PLANT.includes(key)) state.plant[key] = entry;
-    else if (!OWN.includes(key) && key !== "token") state.spec[SHORT[key] ?? key] = entry;
-  }
-  return state;
-}
-
-function encoded(state) {
-  const long = Object.fromEntries(Object.entries(SHORT).map(([a, b]) => [b, a]));
-  const paired = (table) => Object.entries(table).map(([name, entry]) => `${name}:${entry.replace(/,/g, "%2C")}`).join(",");
-  const spec = Object.fromEntries(Object.entries(state.spec).map(([key, entry]) => [long[key] ?? key, entry]));
-  const all = { v: 1, task: state.task, ...state.plant, ...spec, symbols: paired(state.symbols), at: paired(state.at) };
-  Object.assign(all, { convention: state.convention, language: state.language, snap: state.snap === "1/2" ? "" : state.snap });
-  Object.assign(all, { closed: String(state.closed) === "loop" ? "" : state.closed.join(",") || "none", detail: state.detail === "full" ? "" : state.detail, x0: state.x0, xh0: state.xh0, step: state.step, goal: paired(state.goal) });
-  const plain = (t) => encodeURIComponent(t).replace(/%(2C|3B|3A|2F|5B|5D|5E)/g, decodeURIComponent);
-  return Object.entries(all).filter(([, entry]) => entry !== "" && entry !== undefined).map(([key, entry]) => `${key}=${plain(String(entry))}`).join("&");
-}
-
-// -- elements --
-
-function h(tag, attributes = {}, ...inside) {
-  const made = tag.startsWith("svg:") ? document.createElementNS(SVG, tag.slice(4)) : document.createElement(tag);
-  for (const [name, entry] of Object.entries(attributes)) {
-    if (name.startsWith("on")) made.addEventListener(name.slice(2), entry);
-    else if (entry !== undefined && entry !== false) made.setAttribute(name, entry === true ? "" : entry);
-  }
-  made.append(...inside.flat(Infinity).filter((part) => part !== null && part !== undefined));
-  return made;
-}
-
-const sv = (tag, ...more) => h(`svg:${tag}`, ...more);
-
-/** Round numbers of an interval, about so many. */
-function ticks(low, high, count) {
-  const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= rough) ?? rough;
-  const first = Math.ceil(low / step - 1e-9), many = Math.floor(high / step + 1e-9) - first + 1;
-  return Array.from({ length: many }, (_, k) => Number(((first + k) * step).toPrecision(12)));
-}
-
-const SUB = (n) => String(n).replace(/\d/g, (d) => "₀₁₂₃₄₅₆₇₈₉"[Number(d)]);
-const SIGNALS = { x_hat: "x̂", e_2: "e" };
-const nameOf = (line) => `${SIGNALS[line.signal] ?? line.signal}${line.component ? SUB(line.component) : ""}`;
 const DEMO = "v=1&task=compensator&A=[0 1; 0 -1]&B=[0; 1]&C=[1 0]&control=-2, -2&observer=-10, -10";
 
 /**
@@ -191,6 +50,7 @@ export function mount(element, transport, options = {}) {
 
   const w = (name, slots = {}) => filled(language[name], slots);
   const pretty = (s) => s.replace(/(?<!\p{L}{2})-|-(?!\p{L}{2})/gu, "−").replace(/(\d)\.(?=\d)/g, `$1${language.decimal_mark}`);
+  const page = { el, w, pretty };
   const taskName = (task) => language[`task_${task}`] ?? task.replace(/_/g, " ");
   const labelOf = (key) => language[`field_${key}`] ?? key.replace(/_/g, " ");
   const why = (error) => (error.status ? w(error.status === 403 ? "another_page" : "server_says", error) : error.message);
@@ -830,7 +690,7 @@ export function mount(element, transport, options = {}) {
   }
 
   const CROSS = (x, y, r) => `M${x - r} ${y - r}l${2 * r} ${2 * r}m0 ${-2 * r}l${-2 * r} ${2 * r}`;
-  const MARKS = { plant: (x, y) => CROSS(x, y, 3.5), F: (x, y) => `M${x - 4} ${y}h8M${x} ${y - 4}v8`, loop: (x, y) => `M${x} ${y - 5}l5 5-5 5-5-5z`, control_pole: (x, y) => CROSS(x, y, 5), observer_pole: (x, y) => `M${x - 5} ${y}a5 5 0 1 1 0 .01` };
+  const MARKS = { plant: (x, y) => CROSS(x, y, 3.5), F: PLUS, loop: (x, y) => `M${x} ${y - 5}l5 5-5 5-5-5z`, control_pole: (x, y) => CROSS(x, y, 5), observer_pole: (x, y) => `M${x - 5} ${y}a5 5 0 1 1 0 .01` };
   const markName = (kind) => language[`pole_of_${kind}`] ?? w(kind);
 
   /** Say what the signs in the plane are. */
@@ -1002,7 +862,6 @@ export function mount(element, transport, options = {}) {
     drawPointHandle();
   }
 
-  const numberOf = (t) => (rational(t) ? value(rational(t)) : Number(t));
   const onGrid = (x, width) => { let grid = GRID; while (grid * width < 40) grid *= 10; return text(ratio(Math.round(x * grid), grid)); };
   function placeOf(k) {
     const [left, top, width, height] = view.region.frame, [low, high] = view.region.window[k].map(numberOf);
@@ -1119,11 +978,11 @@ export function mount(element, transport, options = {}) {
     drawGoals();
     if (!el.cases.hidden) drawCases(got);
     if (!el.responses.hidden) {
-      drawCurves(el.curves, el.legend, got.courses, got.courses);
-      drawCurves(el.effort, el.efforts, got.courses?.effort, got.courses);
+      drawCurves(page, el.curves, el.legend, got.courses, got.courses);
+      drawCurves(page, el.effort, el.efforts, got.courses?.effort, got.courses);
       el.starts.hidden = isStep();
     }
-    if (!el.loop.hidden) drawLoop(got.loop);
+    if (!el.loop.hidden) drawLoop(page, got.loop);
     drawPlane(isLetGo);  // the poles of F are known now
     isLetGo = false;
   }
@@ -1170,49 +1029,6 @@ export function mount(element, transport, options = {}) {
     });
     el.casesBody.replaceChildren(...(made.length ? [general, ...made] : [h("p", { class: "pale" }, w(Object.keys(s.symbols).length ? "no_values" : "no_letters"))]));
     el.casesBody.querySelectorAll("[data-case]").forEach((b) => b.classList.toggle("chosen", b.dataset.case === JSON.stringify(free())));
-  }
-
-  /** Draw responses over time, of which `all` says up to when. */
-  function drawCurves(svg, legend, got, all) {
-    if (svg.classList.toggle("absent", !got)) { legend.replaceChildren(); return; }
-    const [[t0, t1], [low, high]] = got.window.map((w) => w.map(numberOf));
-    const px = (t) => 40 + ((t - t0) / (t1 - t0)) * 424, py = (v) => 268 - ((v - low) / (high - low || 1)) * 252;
-    const made = [sv("rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 })];
-    for (const t of ticks(t0, t1, 7)) made.push(sv("line", { class: "rule", x1: px(t), y1: 16, x2: px(t), y2: 268 }), sv("text", { x: px(t), y: 284, "text-anchor": "middle" }, pretty(String(all.lg ? Number((10 ** t).toPrecision(2)) : t))));
-    for (const v of got.rules ?? ticks(low, high, 6)) made.push(sv("line", { class: v === (got.axis ?? 0) ? "axis" : "rule", x1: 40, y1: py(v), x2: 464, y2: py(v) }), sv("text", { x: 34, y: py(v) + 4, "text-anchor": "end" }, pretty(String(v))));
-    made.push(sv("text", { x: 464, y: 284, dy: "1.15em", "text-anchor": "end" }, all.lg ?? (all.discrete ? "k" : "t")));
-    const told = [], named = [], ends = svg === el.curves && all.step ? all.ends : [];
-    if (svg === el.curves && all.step) made.push(sv("line", { class: "goal", x1: 40, y1: py(1), x2: 464, y2: py(1) }), sv("text", { x: 458, y: py(1) - 5, "text-anchor": "end" }, "r = 1"));
-    for (const [place, line] of got.lines.entries()) {
-      const n = line.heights.length - 1, spot = (v, k) => `${px(t0 + ((t1 - t0) * k) / n).toFixed(1)} ${py(v / got.parts).toFixed(1)}`;
-      const kind = `curve c${((line.component || 1) - 1) % 4}${line.dashed ? " dashed" : ""}`;
-      made.push(sv("path", { class: kind, d: pathOf(line.heights, spot) }));
-      if (all.discrete) line.heights.forEach((v, k) => { const [x, y] = spot(v, k).split(" "); made.push(sv("circle", { class: kind, cx: x, cy: y, r: 2.6 })); });
-      const settles = [Number(line.overshoot) ? w("overshoots", { percent: pretty(line.overshoot) }) : "", line.settles ? w("settles", { time: pretty(line.settles) }) : "", line.signal === "u" && line.peak ? w("peak", { peak: pretty(line.peak) }) : ""].filter(Boolean).join(", ");
-      if (line.peak) told.push(`${w("peaks", { signal: nameOf(line), peak: pretty(line.peak), last: pretty(ends[place] ?? line.last) })}${settles && `, ${settles}`}`);
-      const said = [ends[place] ? w("ends", { end: pretty(ends[place]) }) : "", settles].filter(Boolean).join(", ");
-      named.push(h("span", {}, sv("svg", { viewBox: "0 0 24 8", "aria-hidden": "true" }, sv("path", { class: kind, d: "M1 4h22" })), nameOf(line), h("small", {}, said)));
-    }
-    if (all.end) svg.setAttribute("aria-label", told.length ? w("up_to", { end: all.end, told: told.join("; ") }) : w(svg === el.effort ? "effort" : "responses"));
-    svg.replaceChildren(...made);
-    legend.replaceChildren(...named);
-  }
-
-  /** A path through points, with gaps where one is not known. */
-  const pathOf = (points, place) => points.reduce((path, p, k) => (p === null ? path : `${path}${k && points[k - 1] !== null ? "L" : "M"}${place(p, k)}`), "");
-
-  /** Draw a loop over the frequency, in its plane, and say how far it is from instability. */
-  function drawLoop(got) {
-    drawCurves(el.magnitude, el.magnitudes, got?.magnitude, { lg: "ω" });
-    drawCurves(el.phase, el.phases, got && { ...got.phase, axis: -180 }, { lg: "ω" });
-    if (got) for (const [name, place] of [["magnitude", "magnitudes"], ["phase", "phases"], ["locus", "loci"]]) el[place].textContent = w(name);
-    el.margins.textContent = got ? pretty(got.says) : w("no_loop");
-    el.locus.classList.toggle("absent", !got);
-    if (!got) { el.loci.textContent = ""; return; }
-    const scale = 126 / Number(got.reach), x = (re) => 252 + re * scale, y = (im) => 142 - im * scale;
-    const line = (x1, y1, x2, y2) => sv("line", { class: "axis", x1, y1, x2, y2 }), clip = `symobs-clip-${mounted}`;
-    const curve = (sign, more) => sv("path", { class: `curve c0${more}`, "clip-path": `url(#${clip})`, d: pathOf(got.locus.map((p) => (p.includes(null) ? null : p)), (p) => `${x(p[0] / got.parts).toFixed(1)} ${y((sign * p[1]) / got.parts).toFixed(1)}`) });
-    el.locus.replaceChildren(sv("clipPath", { id: clip }, sv("rect", { x: 40, y: 16, width: 424, height: 252 })), sv("rect", { class: "ground", x: 40, y: 16, width: 424, height: 252 }), line(40, y(0), 464, y(0)), line(x(0), 16, x(0), 268), sv("circle", { class: "mark", cx: x(0), cy: y(0), r: scale, "clip-path": `url(#${clip})` }), sv("path", { class: "mark F", d: MARKS.F(x(-1), y(0)) }), sv("text", { x: x(-1), y: y(0) + 18, "text-anchor": "middle" }, "−1"), curve(-1, " dashed"), curve(1, ""));
   }
 
   // -- begin --

@@ -6,14 +6,14 @@ import re
 
 from symobs.applications.live import answer
 from symobs.applications.live.answering import pole_sets
-from symobs.applications.live.assets import ASSETS, script, words
+from symobs.applications.live.assets import ASSETS, MODULES, script, words
 from symobs.formula.phrases.languages import languages
 from symobs.tasks.result import tasks
 from tests.kit import tabled
 from tests.support.paths import ROOT
 
 SITE = ROOT / "symobs" / "applications" / "live" / "site"
-FILES = (ASSETS / "symobs-live.js", SITE / "start-wasm.js", SITE / "worker.js")
+FILES = (*(ASSETS / name for name in MODULES), SITE / "start-wasm.js", SITE / "worker.js")
 SOURCE = "".join(path.read_text("utf-8") for path in FILES)
 #: Words of which the script makes the names: `case_yes`.
 MADE = re.findall(r"\[?`(\w+_)\$\{\w+(?:\.\w+)?\}`", SOURCE)
