@@ -545,6 +545,11 @@ def _lists_agree(found: list[Any], expected: list[Any], result: Answered, where:
         return numbers_agree(found, expected, names, where)
     if all(_is_relation(entry) for entry in found):
         return conditions_agree(found, expected, names, where, result.plant.symbols.signs)
+    if all(isinstance(entry, list) and all(map(_is_relation, entry)) for entry in found) and any(found):
+        return len(found) == len(expected) and all(
+            conditions_agree(ours, theirs if isinstance(theirs, list) else [theirs], names, f"{where}[{i}]", signs)
+            for i, (ours, theirs) in enumerate(zip(found, expected, strict=True))
+        )
     if all(isinstance(entry, Mapping) and "eigenvalue" in entry for entry in found):
         return _modes_agree(found, expected, result, where)
     if all(isinstance(entry, list) and all(isinstance(number, int) for number in entry) for entry in found):

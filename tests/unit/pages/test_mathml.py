@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import unicodedata
 import xml.etree.ElementTree as ET
 from itertools import islice, pairwise
@@ -206,7 +207,7 @@ def test_long_displays_are_made_of_elements_that_browsers_know() -> None:
         assert list(faults(MathmlPrinter().display([equation(K, A, member)], boxed=True))) == []
 
 
-@pytest.mark.parametrize("name", [name for name in LETTERS if "exp" not in LETTERS[name].text])
+@pytest.mark.parametrize("name", [name for name in LETTERS if not re.search(r"exp|e\^", LETTERS[name].text)])
 def test_a_letter_shows_the_characters_it_has_on_a_terminal(name: str) -> None:
     """The two forms of a letter are written down apart; both have to be the same letter."""
 

@@ -309,13 +309,12 @@ def _tell_digits(page: Builder, result: OptimalGain) -> None:
 
 def _in_decimals(page: Builder, polynomial: Scalar) -> Term:
     """Return a monic polynomial whose coefficients are decimals."""
-    variable = page.plant.variable
-    _, *rest = polynomial.coefficients(variable)
-    shown = page[f"{variable}^{len(rest)}"]
+    _, *rest = polynomial.coefficients(page.plant.variable)
+    shown = page[f"s^{len(rest)}"]
     for power, c in zip(range(len(rest) - 1, -1, -1), rest, strict=True):
         if not c.is_zero:
             part = page.term(Decimals(Scalar.of(abs(c.fraction()))))
-            part = part @ page[f"{variable}^{power}" if power > 1 else variable] if power else part
+            part = part @ page[f"s^{power}" if power > 1 else "s"] if power else part
             shown = shown + part if c.fraction() > 0 else shown - part
     return shown
 
