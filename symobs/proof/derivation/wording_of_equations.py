@@ -320,8 +320,9 @@ def exceeds(said: SentenceContext, *names: str) -> bool:
 
 
 def reaches(said: SentenceContext, of: str) -> bool:
-    """Return whether an entry of a matrix has at least the absolute value told."""
-    return any(abs(entry.fraction()) >= _told_number(said, "bound") for entry in said.environment.values[of].entries)  # type: ignore[union-attr]
+    """Return whether the largest absolute value of a matrix is at least what is told, and less than ten times that."""
+    largest = max(abs(entry.fraction()) for entry in said.environment.values[of].entries)  # type: ignore[union-attr]
+    return bool(_told_number(said, "bound") <= largest < 10 * _told_number(said, "bound"))
 
 
 def splits(said: SentenceContext, even: str, of: str) -> bool:

@@ -15,9 +15,11 @@ from typing import TYPE_CHECKING, Any
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import symbols_in
 from symobs.formula.figures import TimeResponse
+from symobs.formula.tree import Conjunction, Letter, Literal, Relation
 from symobs.ground.errors import CertificateRejected, DerivationRejected
-from symobs.proof.derivation import Plot
+from symobs.proof.derivation import Conclude, Given, Plot, Sentence
 from symobs.proof.derivation.check import after_all
+from symobs.proof.derivation.steps import everything_in
 from symobs.stability.inequalities.proof import Combined, Opposite
 from symobs.tasks.analysis.rank.observability import RankResult
 from symobs.tasks.analysis.stability_region.stability_region import StabilityRegion
@@ -49,7 +51,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from symobs.formula.tree import Environment
-    from symobs.proof.derivation import Derivation
+    from symobs.proof.derivation import Derivation, Step
     from symobs.tasks.design.pole_placement.single_output import ObserverPair
     from symobs.tasks.result import Result
     from tests.support.algebra import Rows
@@ -326,7 +328,7 @@ def _is_hidden(part: GainDesign, pair: ObserverPair) -> bool:
 
 def try_lines(result: Result, count: Count, of_lines: int = OF_LINES) -> None:
     lines = lines_of(result.derivation)
-    found = [list(changes(line.step)) for line in lines]
+    found = [[] if _is_unread(line) else list(changes(line.step)) for line in lines]
     most = -(-of_lines // len(lines))
     while sum(min(len(some), most) for some in found) < min(LEAST, of_lines, sum(map(len, found))):
         most += 1
@@ -358,8 +360,41 @@ def _walked(derivation: Derivation) -> Environment:
     return after_all(derivation.steps, derivation.start, derivation.discrete)
 
 
+def _is_unread(line: Line) -> bool:
+    """Tell whether a line sets a letter silently that nothing after it is written in: it says nothing."""
+    match line.step:
+        case Given(relations=(Relation(members=(Letter(name), *_)),), silent=True):
+            return not any(item == Letter(name) for item in everything_in(line.rest))
+        case _:
+            return False
+
+
+def _is_as_positive(one: Step, other: Step) -> bool:
+    """Tell whether signs that are declared are those of a positive multiple: 4 g h > 0 for 2 g h > 0."""
+    match one, other:
+        case Conclude(Sentence("declared", ((_, Conjunction(first)),))), Conclude(
+            Sentence("declared", ((_, Conjunction(last)),))
+        ):
+            pairs = [(a, b) for a, b in zip(first, last, strict=True) if a != b]
+            return all(
+                a.operators == b.operators
+                and a.members[1] == b.members[1] == Literal(Scalar.of(0))
+                and _ratio(a, b) > 0
+                for a, b in pairs
+            )
+        case _:
+            return False
+
+
+def _ratio(one: Relation, other: Relation) -> Fraction:
+    found = other.members[0].value / one.members[0].value  # type: ignore[union-attr, operator]
+    return found.fraction() if found.is_constant else Fraction(0)
+
+
 def _is_true(line: Line, alone: Derivation, meant: Derivation, rest: Derivation) -> bool:
     """Tell whether a changed line is true, and what follows where something else is established by it."""
+    if _is_as_positive(line.step, *alone.steps):
+        return True
     if _walked(alone) == line.after:
         return still_true(alone, meant)
     return still_true(line.told(*alone.steps), rest)

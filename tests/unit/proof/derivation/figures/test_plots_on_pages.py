@@ -129,7 +129,8 @@ def drawn_regions() -> Iterator[PlaneRegion]:
     """Yield the regions of the worked examples, of a loop with PI control, and of cubic polynomials."""
     for name, path in NAMES.items():
         if "stability_region" in path.read_text("utf-8"):
-            yield from (found for result in results_of(name) if isinstance(found := result.region, PlaneRegion))
+            found = (getattr(result, "region", None) for result in results_of(name))
+            yield from (region for region in found if isinstance(region, PlaneRegion))
     x, y = Scalar.symbol("x"), Scalar.symbol("y")
     several = [s**3 + n * s**2 + (x * (7 * n % 90) + 9 - n) * s + y - x**2 for n in range(1, 9)]
     for chi in (s**4 + 10 * s**3 + 35 * s**2 + (50 + x) * s + 24 + y, s**3 + 6 * s**2 + (11 - y) * s + 6 + y, *several):
