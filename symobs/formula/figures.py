@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import TYPE_CHECKING, TypeAlias, overload
 
 from symobs.exact import Scalar
@@ -13,7 +14,7 @@ from symobs.formula.tree import Conjunction, Formula, Letter, Literal, Negative
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from symobs.formula.tree import Relation
 
@@ -166,6 +167,35 @@ class BodePicture:
     window: tuple[Interval, Interval]
     discrete: bool = False
     delay: Fraction = Fraction(0)
+
+    @property
+    def gain_margin(self) -> tuple[Place, Place] | None:
+        """The bar from the curve of the modulus to 0 dB where the phase passes −180° (and whole turns), the shortest one."""
+        passes = _passes(self.across, [(phase + 180) / 360 for phase in self.phases], self.levels)
+        found = min(passes, key=lambda each: abs(each[1]), default=None)
+        return None if found is None else ((found[0], found[1]), (found[0], Fraction(0)))
+
+    @property
+    def phase_margin(self) -> tuple[Place, Place] | None:
+        """The bar from the curve of the phase to −180° (and turns) where the modulus passes 0 dB, the shortest one."""
+        bars = [
+            ((x, phase), (x, Fraction(360 * round((phase + 180) / 360) - 180)))
+            for x, phase in _passes(self.across, self.levels, self.phases, every=False)
+        ]
+        return min(bars, key=lambda bar: abs(bar[0][1] - bar[1][1]), default=None)
+
+
+def _passes(
+    across: Sequence[Fraction], first: Sequence[Fraction], second: Sequence[Fraction], *, every: bool = True
+) -> list[Place]:
+    """Return (x, height of the second curve) where the first one passes 0, or with `every` any whole number."""
+    found: list[Place] = []
+    for (x, a, b), (y, c, d) in pairwise(zip(across, first, second, strict=True)):
+        level = Fraction(round((a + c) / 2)) if every else Fraction(0)
+        if a != c and (a - level) * (c - level) <= 0:
+            part = (level - a) / (c - a)
+            found.append((x + part * (y - x), b + part * (d - b)))
+    return found
 
 
 @dataclass

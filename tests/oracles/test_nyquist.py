@@ -7,6 +7,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+import control  # type: ignore[import-untyped]
 import numpy as np
 import pytest
 
@@ -15,6 +16,7 @@ from symobs.exact import Scalar
 from symobs.formula.figures import BodePicture, NyquistPicture
 from symobs.proof.derivation import Plot, Section
 from symobs.proof.derivation.plot_check import faults_of_frequency
+from symobs.stability.frequency_plots import bode_picture
 
 
 @pytest.mark.parametrize("seed", range(16))
@@ -120,3 +122,23 @@ def test_a_wrong_frequency_response_is_seen() -> None:
     narrow = replace(nyquist, window=((Fraction(0), Fraction(1)), nyquist.window[1]))
     for picture in (turned, moved, left, narrow):
         assert [*faults_of_frequency(picture, loop, "s", discrete=False)]
+
+
+@pytest.mark.parametrize("numbers", [([2], [1, 3, 2, 0]), ([5, 5], [1, 2, 5, 1]), ([20], [1, 6, 11, 6])], ids=str)
+def test_the_bars_of_the_bode_picture_are_the_margins(numbers: tuple[list[int], list[int]]) -> None:
+    """Those of python-control, as exactly as 240 nodes over some decades allow."""
+    s = Scalar.symbol("s")
+    above, below = (sum((Scalar.of(c) * s**k for k, c in enumerate(p[::-1])), Scalar.of(0)) for p in numbers)
+    picture = bode_picture(above, below, "s")
+    gain, turn, at_phase, at_gain = control.margin(control.tf(*numbers))
+    for bar, margin, where in (
+        (picture.gain_margin, -20 * math.log10(gain), at_phase),
+        (picture.phase_margin, turn, at_gain),
+    ):
+        if not math.isfinite(margin):
+            assert bar is None
+            continue
+        assert bar is not None
+        (x, end), (_, level) = bar
+        assert 10 ** float(x) == pytest.approx(where, rel=0.02)
+        assert float(end - level) == pytest.approx(margin, rel=0.02, abs=0.2)

@@ -29,13 +29,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
     from fractions import Fraction
 
-    from symobs.formula.figures import Drawn, Interval, PlottedResponse, Run
+    from symobs.formula.figures import Drawn, Interval, Place, PlottedResponse, Run
     from symobs.formula.phrases.languages import Language
     from symobs.formula.tree import Formula
     from symobs.pages.drawings.scene import Content, Measure, Point
 
     #: The name of a curve, its range, and its lines in a frame.
     _Panel = tuple[Content, tuple[float, float], Callable[[Frame], list[tuple[Point, ...]]]]
+    _Bar = tuple[Place, Place] | None
 
 WIDEST, HIGHEST = 270.0, 160.0  # points
 _LINE, _LONGEST_END = 290.0, 0.3
@@ -320,7 +321,7 @@ def _branches(picture: BranchPicture, measure: Measure) -> Scene:
 
 
 def _bode(picture: BodePicture, measure: Measure) -> Scene:
-    """Return modulus and phase one below the other over the logarithm of the frequency."""
+    """Return modulus and phase one below the other over the logarithm of the frequency, with a bar for each margin."""
 
     def drawn_in(heights: Sequence[Fraction]) -> Callable[[Frame], list[tuple[Point, ...]]]:
         return lambda frame: frame.lines(zip(picture.across, heights, strict=True))
@@ -330,8 +331,8 @@ def _bode(picture: BodePicture, measure: Measure) -> Scene:
         ("dB", _decimal(picture.window[1]), drawn_in(picture.levels)),
         ("deg", (min(phases[0], -180.0), max(phases[1], phases[0] + 1)), drawn_in(picture.phases)),
     ]
-    axis = "theta" if picture.discrete else "omega"
-    return _stacked(_decimal(picture.window[0]), axis, panels, measure, decades=True)
+    axis, bars = "theta" if picture.discrete else "omega", (picture.gain_margin, picture.phase_margin)
+    return _stacked(_decimal(picture.window[0]), axis, panels, measure, decades=True, bars=bars)
 
 
 # -- responses ----------------------------------------------------------------------------------------------------------
@@ -395,9 +396,15 @@ def _panels(picture: TimeResponse, measure: Measure) -> Scene:
 
 
 def _stacked(
-    window: tuple[float, float], axis: str, panels: Sequence[_Panel], measure: Measure, *, decades: bool = False
+    window: tuple[float, float],
+    axis: str,
+    panels: Sequence[_Panel],
+    measure: Measure,
+    *,
+    decades: bool = False,
+    bars: Sequence[_Bar] = (),
 ) -> Scene:
-    """Return panels one below the other over one horizontal axis, of logarithms with `decades`."""
+    """Return panels one below the other over one horizontal axis, of logarithms with `decades`, with a bar in each."""
     strokes: list[Stroke] = []
     texts: list[TextLabel] = []
     for row, (name, (low, high), lines) in enumerate(reversed(panels)):
@@ -407,6 +414,10 @@ def _stacked(
         axes, written = _axes(frame, (symbol(axis), name), measure, decades=decades)
         runs = [Stroke(line, "zero") for line in _zero_lines(frame)] + axes
         runs += [Stroke(line, "path") for line in lines(frame)]
+        if bars and (bar := bars[-1 - row]) is not None:
+            runs += [Stroke(line, "piece") for line in frame.lines(bar)]
+            if bar[1][1]:  # the level of −180°, where 0 has a line already
+                runs += [Stroke(line, "zero") for line in frame.lines([(x, bar[1][1]) for x in window])]
         strokes += [replace(run, points=tuple((x, y + up) for x, y in run.points)) for run in runs]
         shown = written if not row else [text for text in written if text.anchor != "north" and text is not written[0]]
         texts += [replace(text, place=(text.place[0], text.place[1] + up)) for text in shown]

@@ -119,6 +119,8 @@ def _sentences(picture: Drawn) -> Iterator[Sentence]:
                 yield caption_sentence("indented")
         case BodePicture(discrete=discrete):
             yield caption_sentence("bode_discrete" if discrete else "bode")
+            if picture.gain_margin or picture.phase_margin:
+                yield caption_sentence("bode_margins")
         case BranchPicture(axes=(parameter, state)):
             yield caption_sentence("branches", parameter=symbol(parameter), state=symbol(state))
             if values := tuple(dict.fromkeys(_equation(parameter, value) for _, value in picture.marks)):
