@@ -143,8 +143,9 @@ def _number(q: Scalar, index: int, power: int | None, digits: int, *, is_imagina
 def _is_zero(q: Scalar, index: int, above: Scalar | None, *, is_imaginary: bool) -> bool:
     """Return whether a part of λ, or of c = g(λ)/q′(λ) with g `above`, is seen to be 0.
 
-    c is a root of the minimal polynomial r of multiplication by g(λ)/q′(λ) modulo q, whose roots lie in disjoint enclosures.
-    r has c̄ among its roots, and gcd(r(x), r(−x)) with c also −c̄: such a mirror image that lies in the enclosure of c is c.
+    c is a root of the minimal polynomial r of multiplication by g(λ)/q′(λ) modulo q, whose roots lie in disjoint enclosures,
+    those of real ones without an imaginary part.  gcd(r(x), r(−x)) has with c also −c̄ among its roots: where the mirror image
+    of the enclosure of c meets no other one, −c̄ is c.
     """
     coefficients = _polynomial(q)
     order = coefficients.degree()
@@ -158,11 +159,20 @@ def _is_zero(q: Scalar, index: int, above: Scalar | None, *, is_imaginary: bool)
         with Precision(_BITS):
             c = acb_poly(top)(c) / slope
     r: Any = moved.minpoly()
-    r = r if is_imaginary else r.gcd(r(fmpq_poly([0, -1])))
     with Precision(_BITS):
-        places: list[Any] = [place for place, _ in r.complex_roots() if place.overlaps(c)]
-    (found,) = places or [acb(1, 1)]
-    return bool(found.imag.is_zero() if is_imaginary else found.real.contains(0))
+        places = [place for place, _ in r.complex_roots()]
+        mirrored = [place for place, _ in r.gcd(r(fmpq_poly([0, -1]))).complex_roots()]
+
+    def at(place: Any) -> list[Any]:
+        return [each for each in places if each.overlaps(place)]
+
+    own = at(c)
+    if len(own) != 1:
+        return False
+    if is_imaginary:
+        return bool(own[0].imag.is_zero())
+    is_mirrored = any(at(place) == own for place in mirrored if place.overlaps(own[0]))
+    return is_mirrored and at(acb(-own[0].real, own[0].imag)) == own
 
 
 def _polynomial(value: Scalar) -> Any:
