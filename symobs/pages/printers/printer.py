@@ -267,6 +267,10 @@ class Printer(FormulaWriter[B]):
         is_plain = argument.level >= Level.PRODUCT and not isinstance(formula_of(function.argument, ""), Quotient)
         return self._wave(function, argument if is_plain else self.grouped(argument))
 
+    def exponent(self, argument: Scalar) -> B:
+        """Return the argument of an exponential: −s/2, whatever polynomials of s look like elsewhere."""
+        return self.typeset(formula_of(argument, ""))
+
     def power_of(self, function: PowerOf) -> B:
         """Return λᵏ, Re (σ + iω)ᵏ, or δ(k, j)."""
         if function.kind == "KroneckerDelta":
