@@ -133,7 +133,7 @@ def _solvable_for_a_letter(equations: list[Scalar], node: Node, region: Region) 
 
 
 class RankAnswer(TypedDict):
-    """A test matrix, its rank r, a basis of its kernel and X with A N = N X; rows and columns of an r×r minor, rows of one of N."""
+    """The test matrix, its rank r, a basis N of its kernel, X with A N = N X, an r×r minor, and rows of a minor of N."""
 
     matrix: Matrix
     rank: int
