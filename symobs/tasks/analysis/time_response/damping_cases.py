@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, NotRequired, Self, TypedDict, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, NotRequired, Self, TypedDict
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.root_sum import RootSum
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 
 #: δ → its sign: `taken` by the caller, or chosen because the signs leave it open.
 Signs = dict[Scalar, str]
-Value = TypeVar("Value", bound=Matrix | Scalar)
 _MOST_BRANCHES = 4
 #: What is said of a mode whose discriminant is negative or positive.
 _BRANCHES = {"<": "branch_under", ">": "branch_over"}
@@ -260,16 +259,6 @@ def _stated(delta: Scalar, sign: str) -> Condition:
 def reject(message: str) -> NoReturn:
     """Refuse an answer that no claim could state."""
     raise CertificateRejected(message)
-
-
-def those_found(*values: Matrix | Scalar | None) -> tuple[Matrix | Scalar, ...]:
-    """Return the answers that there are."""
-    return tuple(value for value in values if value is not None)
-
-
-def named_found(values: Mapping[str, Value | None]) -> dict[str, Value]:
-    """Return the letters that have a value."""
-    return {name: value for name, value in values.items() if value is not None}
 
 
 def rate_of(term: Term) -> Term:

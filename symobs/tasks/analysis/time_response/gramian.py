@@ -51,7 +51,6 @@ from symobs.tasks.analysis.time_response.damping_cases import (
     inside_case,
     rate_of,
     reject,
-    those_found,
     time_environment,
     vanishing_denominators,
 )
@@ -78,6 +77,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_question,
 )
 from symobs.tasks.result import Case, Result, choose, holds, method, page_of, task
+from symobs.tasks.result.answers import those_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

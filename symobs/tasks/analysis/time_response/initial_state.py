@@ -36,9 +36,7 @@ from symobs.tasks.analysis.time_response.damping_cases import (
     Signs,
     exponential_claims,
     from_zero,
-    named_found,
     rate_of,
-    those_found,
     time_environment,
 )
 from symobs.tasks.analysis.time_response.horizons import (
@@ -58,6 +56,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_question,
 )
 from symobs.tasks.result import Case, Result, choose, holds, method, page_of, task
+from symobs.tasks.result.answers import named_found, those_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

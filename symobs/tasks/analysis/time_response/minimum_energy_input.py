@@ -24,10 +24,8 @@ from symobs.tasks.analysis.time_response.damping_cases import (
     DampingAnswer,
     DampingCases,
     Signs,
-    named_found,
     rate_of,
     reject,
-    those_found,
     time_environment,
 )
 from symobs.tasks.analysis.time_response.gramian import Gramian, GramianAnswer
@@ -42,6 +40,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_question,
 )
 from symobs.tasks.result import Result, choose, holds, method, page_of, task
+from symobs.tasks.result.answers import named_found, those_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -133,10 +132,7 @@ class MinimumEnergyInput(DampingCases):
         """The functions of time and of the horizon."""
         answer = self.answer
         found = answer.get("difference"), answer.get("multiplier"), answer["input"], answer.get("energy")
-        return (
-            *those_found(answer["initial"], answer["final"], *found, answer.get("left")),
-            *self.inner.matrices,
-        )
+        return those_found(answer["initial"], answer["final"], *found, answer.get("left"), *self.inner.matrices)
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:

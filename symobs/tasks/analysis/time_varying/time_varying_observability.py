@@ -27,7 +27,7 @@ from symobs.system.specification import read_interval, read_signal
 from symobs.tasks.analysis.rank.rank_test import determinant_term
 from symobs.tasks.analysis.strata.loci import distance_from
 from symobs.tasks.analysis.strata.strata import common_zeros, losses, strata
-from symobs.tasks.analysis.time_response.damping_cases import named_found, reject, those_found, vanishing_denominators
+from symobs.tasks.analysis.time_response.damping_cases import reject, vanishing_denominators
 from symobs.tasks.analysis.time_varying.time_varying_solution import (
     ClosedForms,
     TimeVaryingRequest,
@@ -40,6 +40,7 @@ from symobs.tasks.analysis.time_varying.time_varying_solution import (
 )
 from symobs.tasks.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME, in_time
 from symobs.tasks.result import Case, Result, choose, equality, holds, method, task_in_time
+from symobs.tasks.result.answers import named_found, those_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
