@@ -321,9 +321,15 @@ def test_a_rank_cannot_be_lowered_with_its_witnesses() -> None:
 def test_a_kernel_cannot_be_enlarged_by_a_dependent_vector() -> None:
     result = observability(HIDDEN)
     kernel, X = result.answer["kernel"], result.answer["restricted"]
-    twice = {"kernel": Matrix.block([[kernel, kernel]]), "restricted": Matrix.block([[X, X * 0], [X * 0, X]])}
+    lie = result.answer | {
+        "kernel": Matrix.block([[kernel, kernel]]),
+        "free": (0, 1),
+        "rank": 0,
+        "rows": (),
+        "columns": (),
+    }
     with pytest.raises(CertificateRejected):
-        replace(result, answer={**result.answer, **twice, "free": (0, 1), "rank": 0, "rows": (), "columns": ()})
+        replace(result, answer={**lie, "restricted": Matrix.block([[X, X * 0], [X * 0, X]])})
 
 
 def test_a_compensator_cannot_be_denied_nor_made_of_other_gains() -> None:
