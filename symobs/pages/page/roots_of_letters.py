@@ -74,8 +74,9 @@ def _of_scalar(value: Scalar, positive: frozenset[str], kept: frozenset[str]) ->
         return value
     inside = {f.name: _argument(f, positive, kept) for f in functions if f.kind in KINDS}
     moved = value.substitute({name: to for name, to in inside.items() if Scalar.symbol(name) != to})
-    ways = [way(moved, positive, kept) for way in (_by_terms, _above, _by_factors)] if _has_root(functions) else []
-    spelled = min((*ways, moved), key=lambda each: size(formula_of(each, "")))
+    ways = (_by_terms, _by_factors, _above) if len(value.terms()) > 1 else (_by_terms,)
+    forms = [way(moved, positive, kept) for way in ways] if _has_root(functions) else []
+    spelled = min((*forms, moved), key=lambda each: size(formula_of(each, "")))
     return spelled if _are_equal(value, spelled, positive) else value
 
 
@@ -142,15 +143,15 @@ def _product(term: Scalar, positive: frozenset[str], kept: frozenset[str]) -> Sc
             half = half * base ** int(inside / 2)
     for radicand, degree in ((half, 2), (quarter, 4)):
         below = radicand.numerator.is_one and not radicand.is_one
-        root = _root(1 / radicand if below else radicand, degree, positive)
-        whole = whole / root if below else whole * root
+        if not radicand.is_one:
+            root = _root(1 / radicand if below else radicand, degree, positive)
+            whole = whole / root if below else whole * root
     return whole
 
 
 def _root(radicand: Scalar, degree: int, positive: frozenset[str]) -> Scalar:
     """Return the square root, or the fourth."""
-    root = square_root(radicand, positive)
-    return root if degree == 2 else square_root(root, positive)
+    return square_root(radicand, positive) if degree == 2 else generator("sqrt", generator("sqrt", radicand))
 
 
 def _powers(term: Scalar) -> tuple[Fraction, dict[str, Fraction]]:
