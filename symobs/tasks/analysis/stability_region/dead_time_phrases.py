@@ -14,6 +14,7 @@ PHRASES: dict[str, str] = {
     "dead_time_crossing": "For {gain} = {k} a root lies on the imaginary axis, at the frequency {omega}, both rounded to six digits after the point.",
     "dead_time_bound": "Where the modulus of {gain} is above {bound}, at least one root is unstable: all further crossings lead to the right.",
     "dead_time_rounded": "Hence, rounded to six digits after the point, all poles are stable if and only if",
+    "dead_time_parts": "Hence, rounded to six digits after the point, all poles are stable in these intervals and in no others",
     "dead_time_response": "The loop for {gain} = 1: where it meets the real axis, −1 divided by the value there is a {gain} with poles on the imaginary axis.",
     "dead_time_never": "The closed loop is stable for no {gain}.",
     "dead_time_counts": "The number of unstable poles is {before} without feedback and {after} with it. Hence the frequency response, closed to the right around poles on the boundary of stability, encircles −1 counterclockwise {around} times, that is {before} minus {after}, a negative number counting clockwise turns§.",

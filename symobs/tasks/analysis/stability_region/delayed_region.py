@@ -244,11 +244,11 @@ def _region(page: Builder) -> None:
     """Write the intervals, of a single one its ends."""
     chi, parts = page["chi_cl"], delayed_intervals(page["chi_cl"].scalar, page.environment)
     ends = [part.members[place] for (part,) in parts for place in (0, 2)]
-    say = sentence("dead_time_rounded" if any(isinstance(end, Decimals) for end in ends) else "region_is", {})
     if len(parts) == 1:
+        say = sentence("dead_time_rounded" if any(isinstance(end, Decimals) for end in ends) else "region_is", {})
         page.steps.append(Inequalities(HoldsExactlyWhere(predicate("stable", chi), parts[0]), say, answer=True))
     else:
-        page.steps.append(RegionSummary(chi.formula, (), (), parts, say))
+        page.steps.append(RegionSummary(chi.formula, (), (), parts, sentence("dead_time_parts", {})))
 
 
 def _picture(page: Builder, result: DelayedRegion) -> None:
