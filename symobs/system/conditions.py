@@ -13,7 +13,7 @@ from functools import lru_cache
 from math import prod
 from typing import TYPE_CHECKING
 
-from symobs.exact import EIGENVALUE, Scalar
+from symobs.exact import EIGENVALUE, Scalar, product_of
 from symobs.exact.algebraic.enclosure import sign_of_number
 from symobs.exact.algebraic.real_algebraic import integer_factor, real_roots
 from symobs.exact.core.generators import PI, function_named
@@ -318,11 +318,13 @@ def sign_of(value: Scalar, signs: Mapping[str, str]) -> str:
 
 
 def sign_where(value: Scalar, signs: Mapping[str, str], above: Iterable[Scalar]) -> str:
-    """Return the certain sign of a value where some polynomials are positive."""
-    found = sign_of(value, signs)
+    """Return the certain sign of a value where some polynomials are positive: of its quotient by one, or by all of them."""
+    found, known = sign_of(value, signs), tuple(above)
     if found in {"positive", "negative", "zero"}:
         return found
-    beside = (sign_of(value / polynomial, signs) for polynomial in above)
+    beside = (
+        sign_of(value / polynomial, signs) for polynomial in (*known, *([product_of(known)] if known[1:] else []))
+    )
     return next((sign for sign in beside if sign != "real"), found)
 
 

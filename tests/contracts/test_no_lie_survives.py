@@ -66,8 +66,6 @@ NOT_UNIQUE = {"cart_tracking", "cart_tracking_impossible"}
 IN_FUNCTIONS = {"time_varying_fading_sensor", "time_varying_rotating_sensor"}
 
 
-#: Cases that tell where a point is real, or has the sign that is declared: f = 0 is written there on the other side, too.
-OF_REAL_POINTS = {"hoop_equilibria", "hoop_over_its_speed", "predator_and_prey"}
 #: What plain fractions do not know: an arccosine, which is real in its case alone.
 IN_ANGLES = {"hoop_equilibria", "hoop_over_its_speed"}
 
@@ -84,9 +82,8 @@ def test_no_lie_survives(path: Path, record_property: Callable[[str, object], No
         numbers = f"{count.tried} tried, {count.rejected} rejected, {count.true} other true ones"
         record_property(name, numbers)
         print(f"{path.stem}: {name}: {numbers}")  # noqa: T201 - shown by pytest -rP
-        lies = [lie for lie in count.lies if path.stem not in OF_REAL_POINTS or ".when.operators" not in lie]
-        assert lies == []
-        if lies != count.lies or (path.stem in IN_FUNCTIONS and count is answers):
+        assert count.lies == []
+        if path.stem in IN_FUNCTIONS and count is answers:
             continue
         assert count.tried == count.rejected + count.true
         of_ranks = count is lines and {result.task for result in results(path)} <= OF_RANKS

@@ -10,6 +10,7 @@ from symobs.exact.algebraic.dead_time_margins import WORDS_OF_DEAD_TIME, pade_er
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop
 from symobs.exact.algebraic.nyquist import told_of
 from symobs.exact.algebraic.root_loci import landmarks
+from symobs.exact.core.generators import function_named
 from symobs.exact.floating.riccati_check import Regulator, excess, is_proved
 from symobs.formula.tree import (
     Apply,
@@ -42,7 +43,7 @@ from symobs.proof.derivation.sentence_context import (
     vanishes,
 )
 from symobs.proof.derivation.steps import literals
-from symobs.system.conditions import sign_of
+from symobs.system.conditions import sign_of, sign_where
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -228,6 +229,38 @@ def misses_phase(said: SentenceContext, delay: str) -> bool:
     right = pade_error(*found, as_scalar(evaluate(Letter(delay), here, Exact(here))), int(str(said.slots["order"])))
     told = {n: as_scalar(x.value).fraction() for n, x in said.slots.items() if isinstance(x, Decimals)}
     return told in [{n: Fraction(t) for n, t in each.items()} for each in right]
+
+
+def is_real_point(said: SentenceContext) -> bool:
+    """Return whether the values shown are real and have the signs declared for their names, in the case they stand in."""
+    here, names = said.environment, said.slots["names"]
+    shown = said.told("values").formula if "values" in said.slots else said.of(Relation)[0].members[-1]
+    value = evaluate(shown, here, Exact(here))
+    entries = value.entries if isinstance(value, Matrix) else (value,)
+    if not isinstance(names, SymbolList) or len(names.names) != len(entries):
+        return False
+
+    def sign(number: Scalar) -> str:
+        return sign_where(number, here.signs, here.positive)
+
+    def is_real(number: Scalar) -> bool:
+        found = [f for f in map(function_named, number.names) if f is not None and f.kind in _REAL_WHERE]
+        return all(sign(_REAL_WHERE[f.kind](f.argument)) in _NOT_NEGATIVE and is_real(f.argument) for f in found)
+
+    wanted = [_FITS.get(here.signs.get(name, "real")) for name in names.names]
+    return all(is_real(x) and (fits is None or sign(x) in fits) for x, fits in zip(entries, wanted, strict=True))
+
+
+_NOT_NEGATIVE = frozenset(("positive", "nonnegative", "zero"))
+#: What is not negative where a function is real, and the signs that fit to a declared one.
+_REAL_WHERE = {"sqrt": lambda x: x, "acos": lambda x: 1 - x**2, "asin": lambda x: 1 - x**2}
+_FITS = {
+    "positive": {"positive"},
+    "negative": {"negative"},
+    "nonnegative": _NOT_NEGATIVE,
+    "nonpositive": {"negative", "nonpositive", "zero"},
+    "nonzero": {"positive", "negative", "nonzero"},
+}
 
 
 def is_on_locus(said: SentenceContext, kind: str, opened: str, moved: str) -> bool:

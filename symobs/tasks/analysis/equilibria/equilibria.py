@@ -19,7 +19,7 @@ from symobs.proof.derivation.builder import relation
 from symobs.proof.derivation.facts import on_stratum
 from symobs.proof.derivation.steps import CaseStep
 from symobs.stability.criteria.stability import stability
-from symobs.system.conditions import sign_of
+from symobs.system.conditions import sign_where
 from symobs.system.decided_signs import by_signs, without_squares
 from symobs.system.linearize import all_equilibria, is_rate
 from symobs.system.motion import simplified, with_primes
@@ -192,11 +192,11 @@ class Equilibria(Result):
         if (polynomial := self.polynomial_at(point)) is None:
             return "undecided", []
         found = stability(polynomial, self.plant.variable, self.signs_at_rest, discrete=self.plant.is_discrete)
-        told = {str(condition.expression) for condition in point.conditions if condition.operator == ">"}
+        told = [condition.expression for condition in point.conditions if condition.operator == ">"]
         if point.within is not None and found.verdict == "conditional":
             signs = [sign_on(value, point.within.name, point.within.interval) for value in found.positive]
             return ("no" if -1 in signs else "yes" if all(signs) else "undecided"), []
-        left = [value for value in found.positive if not _is_told(value, told, self.signs_at_rest)]
+        left = [value for value in found.positive if sign_where(value, self.signs_at_rest, told) != "positive"]
         if found.verdict == "conditional" and not left:
             return "yes", []
         return found.verdict, found.inequalities(self.signs_at_rest) if left else []
@@ -375,23 +375,6 @@ def _simple(value: Scalar) -> Scalar:
 
 def _text(point: Equilibrium) -> str:
     return ", ".join(f"{name} = {value}" for name, value in point.values.items())
-
-
-def _is_told(value: Scalar, told: set[str], signs: Mapping[str, str]) -> bool:
-    """Return whether a polynomial is positive by a condition, or by signs."""
-    unit, factors = value.factors()
-    side = 1 if sign_of(unit, signs) == "positive" else -1
-    for factor, power in factors:
-        sign = sign_of(factor, signs)
-        if sign in {"positive", "negative"}:
-            side = -side if sign == "negative" and power % 2 else side
-        elif str(factor) in told:
-            continue
-        elif str(-factor) in told:
-            side = -side if power % 2 else side
-        else:
-            return False
-    return side > 0
 
 
 def known_of(given: Nonlinear) -> dict[str, Scalar]:

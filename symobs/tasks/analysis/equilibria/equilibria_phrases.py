@@ -37,6 +37,12 @@ NAMING = (
     "equilibria_found",
 )
 
+DEMANDS: dict[str, str] = {
+    "rests_x": "real_point",
+    "rests_u": "real_point",
+    "an_equilibrium": "real_point",
+}
+
 QUESTIONS: dict[str, str] = {
     "ask equilibria": "Find all equilibria, and decide for each whether the linearisation there is asymptotically stable.",
 }
