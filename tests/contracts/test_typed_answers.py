@@ -27,6 +27,7 @@ UNTYPED = {
     "GainDesign",
     "IntegralAction",
     "ModeResult",
+    "OfLoop",
     "OutputFeedback",
     "PutAgain",
     "ReducedOrderObserver",
@@ -43,7 +44,7 @@ OPEN = StateSpace("[0 1 0; 0 0 1; -a -b -c]", "[0; 0; 1]", "[1 0 0]")
 SAMPLED = StateSpace("[1 1; 0 1]", "[0; 1]", "[1 0]", dt=1)
 #: What no worked example has in its answer: open questions, refuted data, samples.
 FURTHER: dict[str, Callable[[], Any]] = {
-    "an open exponential": lambda: symobs.matrix_exponential(OPEN),
+    "an open power": lambda: symobs.matrix_exponential(StateSpace("[0 1 0; 0 0 1; -a -b -c]", dt=1)),
     "an open Gramian": lambda: symobs.gramian(OPEN),
     "an open state": lambda: symobs.initial_state(OPEN, output="exp(-t)"),
     "a refuted output": lambda: symobs.initial_state(PLANT, output="exp(-5*t)"),
