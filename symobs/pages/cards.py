@@ -16,6 +16,7 @@ from symobs.formula.phrases.languages import ENGLISH
 from symobs.formula.tree import Apply, Block, Letter, Literal, Negative, Product, Relation, Roots, SignReversal, Sum
 from symobs.ground.dataclass import dataclass
 from symobs.pages.formats.html import HtmlWriter
+from symobs.pages.page.roots_of_letters import in_roots_of_letters, positive_letters
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.pages.printers.root_lists import LATEX, TEXT, listed
@@ -119,7 +120,8 @@ def _card(result: Result, name: str, convention: Convention) -> Card:
     gains: Mapping[str, Any] = result.fields
     known = [gains[letter] for letter in ("K", "L") if isinstance(gains.get(letter), Matrix)]
     relation = Relation((left, _written(value)), ("=",))
-    return Card(name, SignReversal(convention.turned, known).relation(relation), value)
+    shown = SignReversal(convention.turned, known).relation(relation)
+    return Card(name, in_roots_of_letters(shown, positive_letters(result.plant.symbols.signs)), value)
 
 
 def formula_named(name: str) -> Formula:

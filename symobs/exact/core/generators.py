@@ -21,7 +21,7 @@ from symobs.exact.core.scalar import Scalar
 from symobs.ground.dataclass import dataclass
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Container, Iterable, Mapping, Sequence
 
 #: Integers of more bits are not split into primes under a root.
 _PRIME_BITS = 128
@@ -256,8 +256,10 @@ def leads_with_minus(value: Scalar) -> bool:
     return value.terms()[0][0] < 0
 
 
-def square_root(radicand: Scalar) -> Scalar:
+def square_root(radicand: Scalar, positive: Container[str] = ()) -> Scalar:
     """Return √radicand: square factors in front, numbers as products of roots of primes, the rest one generator.
+
+    A denominator that is one of the `positive` letters stays under the root: √(q/r), not √(qr)/r.
 
     Raises ZeroDivisionError, as for any value that means nothing here, where the radicand is a negative number.
     """
@@ -271,8 +273,10 @@ def square_root(radicand: Scalar) -> Scalar:
     front, odd = ONE, ONE
     for factor, power in factors:
         half, rest = divmod(power, 2)
+        if rest and power < 0 and str(factor) in positive:
+            half, rest = half + 1, -1
         front = front * factor**half
-        odd = odd * factor if rest else odd
+        odd = odd * factor**rest
     if odd.is_one and number is not None:
         return front * _root_of_number(number)
     if number is None:  # of a + b√2, a + b √(c + d√2) the common square is taken out
@@ -463,6 +467,12 @@ def symbols_in(value: Scalar | Matrix) -> frozenset[str]:
         found = function_named(name)
         names |= found.symbols if found is not None else {name}
     return frozenset(names)
+
+
+def stands_inside(name: str, value: object) -> bool:
+    """Return whether a name stands inside of a function of a value, as s does in P(s) + k N(s) e^{−sT}."""
+    found = map(function_named, value.names) if isinstance(value, Scalar) else ()
+    return any(function is not None and name in function.symbols for function in found)
 
 
 def letters_outside(value: Scalar) -> list[str]:

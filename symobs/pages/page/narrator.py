@@ -35,6 +35,7 @@ from symobs.pages.page.blocks import (
 from symobs.pages.page.convention_notes import letters_used, title_of
 from symobs.pages.page.detail_level import FINAL, at_detail
 from symobs.pages.page.prose import cited_literature, filled, joined, referred_to, shown, with_reference
+from symobs.pages.page.roots_of_letters import of_derivation
 from symobs.pages.page.sheet import handed_out
 from symobs.proof.derivation import (
     CaseStep,
@@ -83,6 +84,7 @@ def narrate(document: Document) -> tuple[Block, ...]:
         from symobs.pages.decimals.steps import in_decimals  # noqa: PLC0415 - only pages in decimals pay for it
 
         parts = [in_decimals(*pair, digits) for pair in zip(document.derivations, parts, strict=True)]
+    parts = [of_derivation(*pair) for pair in zip(parts, document.derivations, strict=True)]
     is_final = document.detail == FINAL
     language = language_named(document.language)
     is_cited = not is_final and document.references != "none"

@@ -263,9 +263,16 @@ class Printer(FormulaWriter[B]):
             return self.power_of(function)
         argument = self.scalar(function.argument)
         if function.kind == "sqrt":
+            inner = function_named(next(iter(function.argument.names), "")) if is_leaf(function.argument) else None
+            if inner is not None and inner.kind == "sqrt" and inner.name not in self.symbols:
+                return self.root(self.scalar(inner.argument), 4)
             return self.root(argument)
         is_plain = argument.level >= Level.PRODUCT and not isinstance(formula_of(function.argument, ""), Quotient)
         return self._wave(function, argument if is_plain else self.grouped(argument))
+
+    def exponent(self, argument: Scalar) -> B:
+        """Return the argument of an exponential: −s/2, whatever polynomials of s look like elsewhere."""
+        return self.typeset(formula_of(argument, ""))
 
     def power_of(self, function: PowerOf) -> B:
         """Return λᵏ, Re (σ + iω)ᵏ, or δ(k, j)."""

@@ -353,6 +353,8 @@ def size(formula: Formula) -> float:
 
 
 def _size_of_symbol(value: Scalar) -> float:
-    """Return a symbol, or a function with its argument."""
+    """Return a symbol, or a function with its argument; a root of a root is a fourth root."""
     function = function_named(next(iter(value.names)))
+    if function is not None and function.kind == "sqrt" and is_leaf(function.argument) and function.argument.names:
+        return max(_size_of_symbol(function.argument), 2.0)
     return 1.0 if function is None else 1.0 + size(rational_formula(function.argument, ""))

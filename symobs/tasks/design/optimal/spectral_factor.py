@@ -126,7 +126,7 @@ def _root(radicand: Scalar, signs: Mapping[str, str]) -> Scalar:
     known = with_signs(signs, radicand)
     if sign_of(radicand, known) == "negative":
         raise NoFactor(f"{radicand} has no real root")
-    root = square_root(radicand)
+    root = square_root(radicand, {name for name, sign in signs.items() if sign == "positive"})
     known = with_signs(signs, root)
     sign = sign_of(root, known)
     if _WHOLE in signs and not (sign in {"positive", "zero"} and root.size == 2):
