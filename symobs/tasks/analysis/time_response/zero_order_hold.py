@@ -27,6 +27,7 @@ from symobs.tasks.analysis.time_response.damping_cases import (
     exponential_claims,
     from_zero,
     rate_of,
+    reject,
     time_environment,
 )
 from symobs.tasks.analysis.time_response.horizons import over_horizon, read_horizon
@@ -114,6 +115,8 @@ class ZeroOrderHold(DampingCases):
         """Yield the differential equation and its start, the value at the period, and the integral."""
         yield from super().claims()
         A_d, B_d = self.answer["A_d"], self.answer["B_d"]
+        if (A_d is None) != (B_d is None):
+            reject("A_d and B_d are there together")
         if A_d is None or B_d is None:
             return
         m, period = self.plant.matrices, self.answer["horizon"]

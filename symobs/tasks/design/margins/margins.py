@@ -18,7 +18,7 @@ from symobs.exact.algebraic.nyquist import nyquist, told_of
 from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
 from symobs.formula.tree import Decimals, Environment
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError
+from symobs.ground.errors import CertificateRejected, InputError
 from symobs.ground.later import Later
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation.builder import Builder, predicate
@@ -127,6 +127,8 @@ class Margins(Result):
         """Yield what P and P + N are, the slowest root, the ends of the gain, and the digits of the rest."""
         answer, plant = self.answer, self.plant
         if self.loop is None:
+            if named_found({**answer, "open": None}):
+                raise CertificateRejected("there are no margins, and no polynomials, without a loop")
             return
         m, (closed, opened) = plant.matrices, self.loop
         values: dict[str, Any] = {"A": m.A, "chi_o": opened, "chi_cl": closed}
