@@ -94,7 +94,7 @@ TRACE = '''
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypedDict
 
 from symobs.ground.dataclass import dataclass
 from symobs.proof.certificate.claims import Claim
@@ -111,10 +111,17 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 
+class TraceAnswer(TypedDict):
+    """M."""
+
+    M: Matrix
+
+
 @dataclass
 class Trace(Result):
     """A matrix M with M = A."""
 
+    answer: TraceAnswer
     task: ClassVar[str] = "trace"
 
     def claims(self) -> Iterator[Claim]:

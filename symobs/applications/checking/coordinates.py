@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING, Any
 from symobs.exact import Matrix, Scalar, kernel
 from symobs.exact.linear_algebra.transfer_function import pole_and_zero_polynomial
 from symobs.ground.errors import CertificateRejected
+from symobs.tasks.analysis.rank.rank_test import power_rows
 from symobs.tasks.analysis.realization.canonical_form import CanonicalForm
 from symobs.tasks.analysis.realization.kalman_decomposition import Decomposition
 from symobs.tasks.design.compensator.output_feedback import OutputFeedback
 from symobs.tasks.design.reduced_order.reduced_order_observer import ReducedOrderObserver
+from symobs.tasks.result.answers import named_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -92,6 +94,9 @@ def _moved(result: Result, T: Matrix) -> dict[str, Any]:
 
 def _canonical(result: CanonicalForm, given: Mapping[str, Matrix]) -> Iterator[Found]:
     """Yield the form in the four layouts in use; the modal form in the order and scaling of the given matrices."""
+    own, form = result.answer["T"], result.answer["A"]
+    if own is None or form is None:
+        return
     if result.kind == "modal":
         if "T" not in given:
             for wrong in (None, *"CBA"):  # one of the matrices may be wrong, and the others right together
@@ -101,11 +106,11 @@ def _canonical(result: CanonicalForm, given: Mapping[str, Matrix]) -> Iterator[F
             return
         for T, said in _both_directions(given["T"], result.plant.order):
             moved = _moved(result, T)
-            if _same_blocks(moved["A"], result.answer["A"]):
+            if _same_blocks(moved["A"], form):
                 yield Replaced(result, {**moved, "T": given["T"]}), said  # type: ignore[misc]
         return
-    for turn, layout in _layouts(result):
-        T = (turn @ result.answer["T"]).normal()
+    for turn, layout in _layouts(result, form):
+        T = (turn @ own).normal()
         moved = _moved(result, T)
         yield Replaced(result, moved), layout  # type: ignore[misc]
         if "T" in given and given["T"] == T.inverse():
@@ -118,7 +123,8 @@ def _modal_coordinates(result: CanonicalForm, given: Mapping[str, Matrix]) -> Ma
 
     With a last unknown beside the entries of T the equations are homogeneous: a T is a solution in which it is 1.
     """
-    m, n, right = result.plant.matrices, result.plant.order, result.answer
+    m, n, answer = result.plant.matrices, result.plant.order, result.answer
+    right = named_found({"A": answer["A"], "B": answer["B"], "C": answer["C"]})
     form = given.get("A", right["A"])
     sizes = all(value.shape == right[name].shape for name, value in given.items() if name in {"A", "B", "C"})
     if n > _MOST_STATES or not sizes or not _same_blocks(form, right["A"]):
@@ -157,23 +163,21 @@ class Replaced:
         return getattr(self.result, name)
 
 
-def _layouts(result: CanonicalForm) -> Iterator[tuple[Matrix, str]]:
+def _layouts(result: CanonicalForm, A: Matrix) -> Iterator[tuple[Matrix, str]]:
     """Yield the changes of coordinates to the layouts in use: χ in the last or first row, or in the last or first column."""
-    n, A = result.plant.order, result.answer["A"]
+    n, one = result.plant.order, Matrix.identity(result.plant.order)
+    is_controllable = result.kind == "controllable"
+    names = ("row", "column") if is_controllable else ("column", "row")
     reverse = Matrix.of([[int(i + j == n - 1) for j in range(n)] for i in range(n)])
-    one = Matrix.identity(n)
-    if result.kind == "controllable":
-        columns = [result.answer["B"]]
-        while len(columns) < n:
-            columns.append((A @ columns[-1]).normal())
-        other, names = Matrix.block([columns]).inverse().normal(), ("row", "column")
-    else:
-        rows = [result.answer["C"]]
-        while len(rows) < n:
-            rows.append((rows[-1] @ A).normal())
-        other, names = Matrix.block([[row] for row in rows]), ("column", "row")
     yield one, ""
     yield reverse, f"the coefficients stand in the first {names[0]} here"
+    B, C = result.answer["B"], result.answer["C"]
+    if is_controllable and B is not None:
+        other = power_rows(A.T, B.T).T.inverse().normal()
+    elif C is not None:
+        other = power_rows(A, C)
+    else:
+        return
     yield other, f"the coefficients stand in the last {names[1]} here"
     yield reverse @ other, f"the coefficients stand in the first {names[1]} here"
 

@@ -167,7 +167,7 @@ def is_as_stable(result: Result, name: str, value: Matrix, digits: Matrix | None
         there = result
     else:
         return True
-    right = there.answer[there.letter] if digits is None else digits
+    right = there.gain if digits is None else digits
     if right is None or right.shape != value.shape:
         return True
     loops = [_of_loop(there.plant, there.letter, gain) for gain in (value, right)]

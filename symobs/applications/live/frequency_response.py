@@ -37,8 +37,8 @@ def _coefficients(result: Result) -> tuple[list[Fraction], list[Fraction]] | Non
     if not shows_loop(result) or not all(map(is_number, plant.matrices.A.entries)):
         return None
     try:
-        found = (result.answer["closed"], result.answer["opened"]) if isinstance(result, Margins) else loop_of(result)
-        if None in found or found[0] == found[1]:
+        found = result.loop if isinstance(result, Margins) else loop_of(result)
+        if found is None or found[0] == found[1]:
             return None
         above, below = (list(numbers(part, plant.variable)) for part in found)
     except (InputError, NotRational):

@@ -36,7 +36,9 @@ def margins_at(program: Program, point: Sequence[Fraction], gains: Mapping[str, 
     plant = program.problem.plant
     closed, opened = _polynomials(program, values, gains)
     found = margins_of(closed, opened, plant.variable, plant.dt)
-    return found | {MARGINS_STATUS: "done" if "gain_up" in found else "unstable"}
+    if found["gain_up"] is None:
+        return {"slowest": found["slowest"], MARGINS_STATUS: "unstable"}
+    return {**found, MARGINS_STATUS: "done"}
 
 
 def _polynomials(program: Program, values: Mapping[str, Scalar], gains: Mapping[str, Matrix]) -> tuple[Scalar, Scalar]:

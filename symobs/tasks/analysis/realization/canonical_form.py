@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from difflib import get_close_matches
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypedDict
 
 from symobs.exact import (
     Ideal,
@@ -40,6 +40,7 @@ from symobs.tasks.analysis.rank.rank_page import square_test
 from symobs.tasks.analysis.realization.modal_form import modal_basis
 from symobs.tasks.analysis.strata.strata import carried, strata
 from symobs.tasks.result import Case, Result, choose, equality, holds, method, task
+from symobs.tasks.result.answers import named_found, those_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -57,6 +58,24 @@ KINDS: dict[str, str | None] = {"controllable": "controllability", "observable":
 GIVEN = "given"
 
 
+class PlantMoved(TypedDict):
+    """T, T⁻¹ and the matrices of the plant in the coordinates T x; None where there are none."""
+
+    T: Matrix | None
+    inverse: Matrix | None
+    A: Matrix | None
+    B: Matrix | None
+    C: Matrix | None
+    D: Matrix | None
+
+
+class CanonicalAnswer(PlantMoved):
+    """Also χ, and the blocks of the modal form."""
+
+    polynomial: Scalar
+    blocks: Blocks
+
+
 @dataclass
 class CanonicalForm(Result):
     """The plant in canonical coordinates x̄ = T x, or that there are none.
@@ -65,6 +84,7 @@ class CanonicalForm(Result):
     factors.  Where there is no form, the rank test says why.
     """
 
+    answer: CanonicalAnswer
     kind: str
 
     task: ClassVar[str] = "canonical_form"
@@ -94,7 +114,7 @@ class CanonicalForm(Result):
     def as_plant(self) -> StateSpace:
         """The plant in these coordinates, where they are some."""
         answer, m = self.answer, self.plant.matrices
-        if answer["T"] is None:
+        if answer["A"] is None:
             message = f"there is no {self.kind} canonical form, and no plant in it"
             raise InputError(message, where="plant", repair="take another form, or the plant itself")
         B, C = answer["B"] if m.has_input else None, answer["C"] if m.has_output else None
@@ -116,14 +136,14 @@ class CanonicalForm(Result):
         if answer["T"] is None:
             rank = self.test.answer["rank"] if self.test is not None else n
             yield Claim(relation(rank, "<", n), e, "the pair does not have full rank")
-            absent = Scalar.of(sum(answer[key] is not None for key in ("inverse", *"ABCD")))
-            yield equality(absent, 0, e, "no form is given where there is none")
+            given = those_found(answer["inverse"], answer["A"], answer["B"], answer["C"], answer["D"])
+            yield equality(len(given), 0, e, "no form is given where there is none")
             return
-        values = {"T": answer["T"], "S": answer["inverse"], "A_bar": answer["A"]}
+        values: dict[str, Matrix | None] = {"T": answer["T"], "S": answer["inverse"], "A_bar": answer["A"]}
         values |= {"B": m.B, "B_bar": answer["B"]} if m.has_input else {}
         values |= {"C": m.C, "C_bar": answer["C"]} if m.has_output else {}
         values |= {"D": m.D, "D_bar": answer["D"]} if m.has_input and m.has_output else {}
-        e = e.extended_by(values=values)
+        e = e.extended_by(values=named_found(values))
         T, S = e["T"], e["S"]
         yield holds(e, "T S = I")
         yield holds(e, "A_bar = T A S")
@@ -158,8 +178,8 @@ class CanonicalForm(Result):
         """The determinant of the test matrix, or of the basis of the modal form."""
         if self.test is not None:
             return self.test.existence
-        S: Matrix = self.answer["inverse"]
-        return (S.determinant(), S.common_denominator())
+        S = self.answer["inverse"]
+        return () if S is None else (S.determinant(), S.common_denominator())
 
     @property
     def verdict(self) -> str:
@@ -193,8 +213,9 @@ class CanonicalForm(Result):
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The change of coordinates and the matrices in it."""
-        matrices = {key: self.answer[key] for key in "TABCD"}
-        return {"kind": self.kind, **matrices, "polynomial": self.answer["polynomial"]}
+        answer = self.answer
+        found = {"T": answer["T"], "A": answer["A"], "B": answer["B"], "C": answer["C"], "D": answer["D"]}
+        return {"kind": self.kind, **found, "polynomial": answer["polynomial"]}
 
     def write(self, page: Builder) -> None:
         """Write χ, the basis, and the plant in it."""
@@ -217,20 +238,20 @@ class CanonicalForm(Result):
         """Write the coordinates and the plant in them."""
         if self.test is not None and not self._write_test(page):
             return
-        m = self.plant.matrices
+        m, T, S = self.plant.matrices, self.answer["T"], self.answer["inverse"]
         if self.kind == "observable":
             page.define("T", page("{hankel} O", hankel=self._hankel), say="last_column_observable", answer=True)
             page.define("S", "T^-1")
         elif self.kind == "controllable":
             page.define("S", page("Ctr {hankel}", hankel=self._hankel), say="last_row_controllable")
             page.define("T", "S^-1", answer=True)
-        elif self.kind == GIVEN:
-            page.define("T", page.value(self.answer["T"]), say="coordinates_given", closing=False)
+        elif self.kind == GIVEN and T is not None:
+            page.define("T", page.value(T), say="coordinates_given", closing=False)
             page.define("S", "T^-1", say="coordinates_back")
             if conditions := [c.expression for c in self.holds_where if c.kind == "existence"]:
                 page.assume("coordinates_provided", *conditions)
-        else:
-            page.define("S", page.value(self.answer["inverse"]), say="modal_ones" if self.has_ones else "modal_basis")
+        elif S is not None:
+            page.define("S", page.value(S), say="modal_ones" if self.has_ones else "modal_basis")
             conditions = [c.expression for c in self.holds_where if c.kind == "existence"]
             if conditions:
                 page.assume("distinct_provided", *conditions)
@@ -281,12 +302,12 @@ def solve(plant: StateSpace, kind: str, method_name: str) -> CanonicalForm:
         A, C = (m.A.T, m.B.T) if kind == "controllable" else (m.A, m.C)
         rows = power_rows(A, C)
         S = (rows.T @ hankel).normal() if plant.simplified(rows.determinant()) else None
-    answer: dict[str, Any] = dict.fromkeys(("T", "inverse", *"ABCD"))
+    answer: PlantMoved = {"T": None, "inverse": None, "A": None, "B": None, "C": None, "D": None}
     if S is not None:
         T = S.inverse().normal()
         if kind == "observable":
             T, S = S.T, T.T
-        answer |= _moved(plant, T, S)
+        answer = _moved(plant, T, S)
     return CanonicalForm(plant, method_name, {**answer, "polynomial": chi, "blocks": blocks}, kind)
 
 
@@ -300,13 +321,17 @@ def _with_ones(plant: StateSpace, S: Matrix, blocks: Blocks) -> Matrix:
     return (own @ wanted.inverse()).normal() if plant.simplified(own.determinant()) else S
 
 
-def _moved(plant: StateSpace, T: Matrix, S: Matrix) -> dict[str, Matrix]:
+def _moved(plant: StateSpace, T: Matrix, S: Matrix) -> PlantMoved:
     """Return T, S = T⁻¹ and the matrices of the plant in the coordinates T x."""
     m = plant.matrices
-    found = {"T": T, "inverse": S, "A": (T @ m.A @ S).normal()}
-    found |= {"B": (T @ m.B).normal()} if m.has_input else {}
-    found |= {"C": (m.C @ S).normal()} if m.has_output else {}
-    return found | ({"D": m.D} if m.has_input and m.has_output else {})
+    return {
+        "T": T,
+        "inverse": S,
+        "A": (T @ m.A @ S).normal(),
+        "B": (T @ m.B).normal() if m.has_input else None,
+        "C": (m.C @ S).normal() if m.has_output else None,
+        "D": m.D if m.has_input and m.has_output else None,
+    }
 
 
 @method("canonical_form/basis", source="bass1965; kailath1980, ch. 2")
@@ -321,7 +346,7 @@ def in_coordinates(plant: StateSpace, T: Matrix) -> InGivenCoordinates:
         message = "the matrix has no inverse, so that T x are no coordinates of the state"
         raise InputError(message, where="specification.T", repair="give rows that are independent")
     chi = plant.matrices.A.characteristic_polynomial(plant.variable)
-    answer = {**dict.fromkeys("ABCD"), **_moved(plant, T, T.inverse().normal()), "polynomial": chi, "blocks": ()}
+    answer: CanonicalAnswer = {**_moved(plant, T, T.inverse().normal()), "polynomial": chi, "blocks": ()}
     return InGivenCoordinates(plant, "basis", answer, GIVEN)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypedDict
 
 from symobs.exact import Scalar
 from symobs.exact.algebraic.dead_time import DelayedLoop
@@ -50,12 +50,19 @@ if TYPE_CHECKING:
 _WHERE = "specification.controller"
 
 
+class LoopPolynomials(TypedDict):
+    """P and N."""
+
+    P: Scalar
+    N: Scalar
+
+
 class DelayedLoopResult:
     """What the tasks about a loop with a dead time share: P and N, and what is told of them."""
 
     if TYPE_CHECKING:
         plant: StateSpace
-        answer: Mapping[str, Any]
+        answer: LoopPolynomials
         written: Any
     gain = ""
 
@@ -98,7 +105,7 @@ class DelayedLoopResult:
 
 def delayed_loop(
     plant: StateSpace, controller: object, gain: str | None
-) -> tuple[StateSpace, WrittenTransferFunction, dict[str, Scalar]]:
+) -> tuple[StateSpace, WrittenTransferFunction, LoopPolynomials]:
     """Return the plant with the names of the controller, the controller, and P and N; `gain` is the name of k, if there is one.
 
     Raises `InputError` where the loop is not strictly proper, where it has other symbols, and where k is no factor of it.
@@ -135,6 +142,7 @@ class _Region:
 class DelayedRegion(DelayedLoopResult, _Region, Result):
     """The gains k for which all roots of P + k N e^{−sT} have negative real part."""
 
+    answer: LoopPolynomials
     written: WrittenTransferFunction
     gain: str
 

@@ -6,7 +6,7 @@ cancelling, P + N the characteristic polynomial of the closed loop, and k the ga
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 
 from symobs.exact import RealNumber, Scalar
 from symobs.exact.algebraic.loop_distances import INFINITE, MARGIN_DIGITS, Loop, slowest_root
@@ -17,29 +17,56 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
 
+#: The margins, as they are called.
+Margin: TypeAlias = Literal["gain_down", "gain_up", "phase_deg", "modulus", "peak", "slowest"]
+MARGINS: tuple[Margin, ...] = ("gain_down", "gain_up", "phase_deg", "modulus", "peak", "slowest")
+
+
+class MarginNumbers(TypedDict):
+    """Exact numbers, certain decimals as texts, `oo`; None of a loop that is not stable, whose slowest root may be known."""
+
+    gain_down: RealNumber | Scalar | str | None
+    gain_up: RealNumber | Scalar | str | None
+    phase_deg: str | None
+    modulus: str | None
+    peak: str | None
+    slowest: RealNumber | None
+
+
+NO_MARGINS: MarginNumbers = {
+    "gain_down": None,
+    "gain_up": None,
+    "phase_deg": None,
+    "modulus": None,
+    "peak": None,
+    "slowest": None,
+}
+
+
 class NotRational(ValueError):
     """Raised for a loop with other than rational numbers."""
 
 
-def margins_of(closed: Scalar, opened: Scalar, variable: str, dt: object) -> dict[str, Any]:
+def margins_of(closed: Scalar, opened: Scalar, variable: str, dt: object) -> MarginNumbers:
     """Return the margins of the loop with the polynomials P + N and P; the slowest root alone where it is not stable.
 
-    Exact numbers are real numbers, certain decimals texts.  Raises `NotRational`.
+    Raises `NotRational`.
     """
     discrete = variable == "z"
     above, below = (numbers(polynomial, variable) for polynomial in (closed, opened))
     slowest = slowest_root(above, discrete=discrete)
     if not slowest < RealNumber.of(int(discrete)):
-        return {"slowest": slowest}
+        return {**NO_MARGINS, "slowest": slowest}
     loop = Loop.of(above, below, discrete=discrete)
-    found: dict[str, Any] = {
-        "slowest": slowest,
+    low, high = gains_of(above, below, dt)
+    return {
+        "gain_down": low,
+        "gain_up": high,
         "phase_deg": loop.phase(MARGIN_DIGITS),
         "modulus": loop.modulus(MARGIN_DIGITS),
+        "peak": loop.peak(MARGIN_DIGITS),
+        "slowest": slowest,
     }
-    found["peak"] = loop.peak(MARGIN_DIGITS)
-    found["gain_down"], found["gain_up"] = gains_of(above, below, dt)
-    return found
 
 
 def numbers(polynomial: Scalar, variable: str) -> Sequence[Fraction]:

@@ -7,7 +7,7 @@ noise of intensity Q contributes W⁻¹ ∫ V Q Vᵀ dt W⁻¹ with V(t) = e^{A�
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Required, Self, TypedDict
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import derivative, identities, roots_in, substitute
@@ -35,8 +35,8 @@ from symobs.tasks.analysis.rank.rank_page import tell_deficient
 from symobs.tasks.analysis.rank.rank_test import rank_answer
 from symobs.tasks.analysis.time_response.damping_cases import Signs, exponential_claims, from_zero, time_environment
 from symobs.tasks.analysis.time_response.horizons import (
-    INFINITE,
     OfTheInitialState,
+    OfTheInitialStateAnswer,
     over_horizon,
     read_horizon,
     stationary,
@@ -51,6 +51,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_question,
 )
 from symobs.tasks.result import Result, choose, holds, method, page_of, task
+from symobs.tasks.result.answers import named_found, those_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -69,10 +70,41 @@ _MOST_TERMS = 16
 END = Scalar.symbol("T")
 
 
+class CovarianceAsked(TypedDict):
+    """The intensities Q (None: no input noise) and R, the horizon, and whether that is called t."""
+
+    Q: Matrix | None
+    R: Matrix
+    horizon: Scalar
+    called_t: bool
+
+
+class CovarianceParts(TypedDict, total=False):
+    """The covariance and its parts; W and the integrals S_R and S_Q, also as functions of t; e^{At}, e^{−At}, V(t)."""
+
+    covariance: Required[Matrix | None]
+    input_part: Matrix
+    output_part: Matrix
+    exponential: Matrix
+    backwards: Matrix
+    gramian: Matrix
+    W: Matrix
+    R_primitive: Matrix
+    S_R: Matrix
+    V: Matrix
+    Q_primitive: Matrix
+    S_Q: Matrix
+
+
+class CovarianceAnswer(CovarianceAsked, CovarianceParts, OfTheInitialStateAnswer):
+    """What is asked, the signs and the test of observability beside the parts."""
+
+
 @dataclass
 class InitialStateCovariance(OfTheInitialState):
     """Σ = Σ_R + Σ_Q with W Σ_R W = S_R and W Σ_Q W = S_Q, the two integrals checked by differentiation."""
 
+    answer: CovarianceAnswer
     task: ClassVar[str] = "initial_state_covariance"
     answered_by = ("covariance",)
     only_value = ("covariance",)
@@ -81,12 +113,20 @@ class InitialStateCovariance(OfTheInitialState):
     asked_for: ClassVar[tuple[str, ...]] = ("Q", "R", "horizon")
 
     @classmethod
-    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant; `asked` holds Q (None: no input noise), R, horizon, and whether that is called t."""
+    def of(cls, plant: StateSpace, method_name: str, asked: CovarianceAsked, taken: Signs) -> Self:
+        """Return the result for a plant."""
         m = plant.matrices
         test = rank_answer(m.A, m.C)
-        data = {name: asked[name] for name in ("Q", "R", "horizon", "called_t")}
-        shared = {**data, "rank": test, "taken": taken, "chosen": {}, "covariance": None}
+        shared: CovarianceAnswer = {
+            "Q": asked["Q"],
+            "R": asked["R"],
+            "horizon": asked["horizon"],
+            "called_t": asked["called_t"],
+            "rank": test,
+            "taken": taken,
+            "chosen": {},
+            "covariance": None,
+        }
         if test["rank"] < plant.order:
             return cls(plant, method_name, shared)
         if plant.order > _MOST_STATES:
@@ -98,14 +138,16 @@ class InitialStateCovariance(OfTheInitialState):
             return cls(plant, method_name, {**shared, "question": question_of(error), "factor": error.factor})
         if question := too_long(plant.matrices.A, plant.matrices.C, found.table()):
             return cls(plant, method_name, {**shared, "question": question, "factor": None, "chosen": chosen})
-        return cls(plant, method_name, {**shared, "chosen": chosen, **_parts(plant, found.table(), data)})
+        return cls(plant, method_name, {**shared, "chosen": chosen, **_parts(plant, found.table(), asked)})
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time and of the horizon."""
-        parts = ("covariance", "input_part", "output_part", "W", "S_R", "S_Q", "V")
-        names = (*parts, "exponential", "backwards", "gramian", "R_primitive", "Q_primitive")
-        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+        answer = self.answer
+        parts = answer["covariance"], answer.get("input_part"), answer.get("output_part")
+        ends = answer.get("W"), answer.get("S_R"), answer.get("S_Q"), answer.get("V")
+        motions = answer.get("exponential"), answer.get("backwards"), answer.get("gramian")
+        return those_found(*parts, *ends, *motions, answer.get("R_primitive"), answer.get("Q_primitive"))
 
     @property
     def verdict(self) -> str:
@@ -130,15 +172,15 @@ class InitialStateCovariance(OfTheInitialState):
             return
         yield from self._about_parts(time_environment(self.plant, self.values_by_letter(), self.answer["horizon"]))
 
-    def values_by_letter(self) -> dict[str, Any]:
+    def values_by_letter(self) -> dict[str, Matrix]:
         """Return the values of the letters of claims and page."""
         m, answer = self.plant.matrices, self.answer
-        names = {"exp_At": "exponential", "Phi_m": "backwards", "W_t": "gramian", "W": "W", "S_R": "S_R", "S_Q": "S_Q"}
-        names |= {"Cov": "covariance", "Cov_R": "output_part", "Cov_Q": "input_part", "V_t": "V"}
-        names |= {"R_t": "R_primitive", "Q_t": "Q_primitive", "Q": "Q", "R": "R"}
-        values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C}
-        values |= {name: answer[key] for name, key in names.items() if answer.get(key) is not None}
-        horizon = answer["horizon"]
+        found = {"exp_At": answer.get("exponential"), "Phi_m": answer.get("backwards"), "W_t": answer.get("gramian")}
+        found |= {"W": answer.get("W"), "S_R": answer.get("S_R"), "S_Q": answer.get("S_Q")}
+        found |= {"Cov": answer["covariance"], "Cov_R": answer.get("output_part"), "Cov_Q": answer.get("input_part")}
+        found |= {"V_t": answer.get("V"), "R_t": answer.get("R_primitive"), "Q_t": answer.get("Q_primitive")}
+        found |= {"Q": answer["Q"], "R": answer["R"]}
+        values, horizon = {"A": m.A, "B": m.B, "C": m.C, **named_found(found)}, answer["horizon"]
         return values | {f"{n} at T": substitute(v, {"t": horizon}) for n, v in list(values.items())}
 
     def _about_parts(self, e: Environment) -> Iterator[Claim]:
@@ -180,8 +222,10 @@ class InitialStateCovariance(OfTheInitialState):
     def fields(self) -> Mapping[str, Any]:
         """The covariance, its two parts, the best horizon."""
         asked = self.answer.get("question")
-        names = ("covariance", "input_part", "output_part")
-        found: dict[str, Any] = {name: self._as_called(self.answer.get(name)) for name in names}
+        answer = self.answer
+        parts = {"covariance": answer["covariance"], "input_part": answer.get("input_part")}
+        parts |= {"output_part": answer.get("output_part")}
+        found: dict[str, Any] = {name: self._as_called(part) for name, part in parts.items()}
         found["best_horizon"] = self.best_horizon
         return {**found, **({"question": asked} if asked else {})}
 
@@ -207,7 +251,7 @@ def roots_of_frequencies(value: Quasipolynomial) -> bool:
     return any(roots_in(key.rate) or roots_in(key.frequency) for key in value.terms)
 
 
-def _parts(plant: StateSpace, exponential: Table, asked: Mapping[str, Any]) -> dict[str, Any]:
+def _parts(plant: StateSpace, exponential: Table, asked: CovarianceAsked) -> CovarianceParts:
     """Return the integrals with their primitives and the parts of the covariance."""
     m, horizon = plant.matrices, asked["horizon"]
     seen = product(table_of(m.C), exponential)
@@ -215,7 +259,8 @@ def _parts(plant: StateSpace, exponential: Table, asked: Mapping[str, Any]) -> d
     noisy = integral(product(transposed(seen), product(table_of(asked["R"]), seen)))
     ends = {"T": horizon}
     W_end, S_R = (_in_end(matrix_at(table, END)) for table in (W, noisy))
-    answer: dict[str, Any] = {
+    answer: CovarianceParts = {
+        "covariance": None,
         "exponential": matrix_at(exponential, TIME),
         "gramian": matrix_at(W, TIME),
         "W": substitute(matrix_at(W, END), ends),
@@ -310,7 +355,7 @@ def read_intensity(value: object, plant: StateSpace, name: str, size: int) -> Ma
 
 
 @method("initial_state_covariance/gramian", source="least-squares estimate; kalman1961")
-def gramian_estimate(plant: StateSpace, asked: Mapping[str, Any]) -> InitialStateCovariance:
+def gramian_estimate(plant: StateSpace, asked: CovarianceAsked) -> InitialStateCovariance:
     """Propagate white noise through the estimate W⁻¹ ∫ e^{Aᵀt} Cᵀ ỹ dt, entry by entry in closed form."""
     return InitialStateCovariance.of(plant, "gramian", asked, {})
 
@@ -338,14 +383,14 @@ def initial_state_covariance(
         message = "the intensity R of the output noise is missing"
         raise InputError(message, where="specification.R", repair='give it, for example R = "r"')
     end = read_horizon(plant, horizon)
-    if end == INFINITE:
+    if isinstance(end, str):
         raise InputError("the horizon is finite here", where="specification.horizon", repair='write "T", or a number')
-    asked: dict[str, Any] = {"Q": read_intensity(Q, plant, "Q", max(plant.inputs, 1)), "R": intensity}
+    driving = read_intensity(Q, plant, "Q", max(plant.inputs, 1))
     called_t = end == TIME  # the integrands contain the time, too: beside it the end of the horizon is T
-    if called_t and any("T" in part.field.names for part in (plant, intensity, asked["Q"]) if part is not None):
+    if called_t and any("T" in part.field.names for part in (plant, intensity, driving) if part is not None):
         message = "the horizon cannot be called t where T is a parameter: t is the time, and T stands for its end"
         raise InputError(message, where="specification.horizon", repair="give the parameter another name")
-    asked |= {"horizon": END if called_t else end, "called_t": called_t}
+    asked: CovarianceAsked = {"Q": driving, "R": intensity, "horizon": END if called_t else end, "called_t": called_t}
     return over_horizon(lambda: choose("initial_state_covariance", method, "gramian").solve(plant, asked))
 
 
@@ -437,7 +482,9 @@ def tell_unobservable(result: InitialStateCovariance, page: Builder) -> None:
 def _tell_horizons(result: InitialStateCovariance, page: Builder) -> None:
     """Say where each variance is stationary, with the derivative that vanishes there."""
     signs = {**result.plant.symbols.signs, "T": "positive"}
-    covariance: Matrix = result.answer["covariance"]
+    covariance = result.answer["covariance"]
+    if covariance is None:
+        return
     if any(text is not None for text in result.best_horizon):
         page.remark("horizon_tradeoff")
     for index, text in enumerate(result.best_horizon):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import function_named, functions_in, symbols_in
@@ -17,14 +17,13 @@ from symobs.tasks.analysis.time_response.response_in_time import Response
 from symobs.tasks.result import Result, choose, method, task
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from symobs.system import StateSpace
     from symobs.system.specification import MatrixText, Name, Quantity, TimeFunctions
+    from symobs.tasks.analysis.time_response.response_in_time import ResponseAsked
 
 
 @method("response/superposition", source="kailath1980, ch. 2; ogata2010, ch. 9")
-def superposition(plant: StateSpace, asked: Mapping[str, Any]) -> Response:
+def superposition(plant: StateSpace, asked: ResponseAsked) -> Response:
     """Add e^{At} x₀ and the motion from rest, ∫₀ᵗ e^{A(t−s)} B u(s) ds."""
     return Response.of(plant, "superposition", asked, {})
 
@@ -108,7 +107,7 @@ def response_in_steps(
     if given_input is not None:
         plant.require("B", task="response")
         u = _read_input(given_input, plant)
-    asked = {"initial": start, "input": u, "at_time": instant}
+    asked: ResponseAsked = {"initial": start, "input": u, "impulse": None, "at_time": instant}
     return ResponseInSteps.of(plant, "superposition", asked, {})
 
 

@@ -5,7 +5,7 @@ Plant and input together have powers.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 from symobs.exact import Matrix, Scalar, companion
 from symobs.exact.core.generators import function_named, substitute
@@ -24,13 +24,12 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
 from symobs.tasks.analysis.time_response.response_in_time import Response, write_branch
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from symobs.formula.tree import Environment
     from symobs.formula.tree.term import Term
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.tasks.analysis.time_response.damping_cases import Signs
+    from symobs.tasks.analysis.time_response.response_in_time import ResponseAnswer, ResponseAsked
 
 
 @dataclass
@@ -42,25 +41,34 @@ class ResponseInSteps(Response):
     clock = "k"
 
     @classmethod
-    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant; `asked` holds the initial state and the input in k."""
+    def of(cls, plant: StateSpace, method_name: str, asked: ResponseAsked, taken: Signs) -> Self:
+        """Return the result for a plant."""
         m, start, u = plant.matrices, asked["initial"], asked["input"]
-        shared = {**asked, "impulse": None, "start": start, "taken": taken, "chosen": {}}
+        answer: ResponseAnswer = {
+            "initial": start,
+            "input": u,
+            "impulse": None,
+            "at_time": asked["at_time"],
+            "start": start,
+            "taken": taken,
+            "chosen": {},
+            "state": None,
+            "output": None,
+        }
         A, z = m.A, start
         if u is not None:
             A, z = _with_input(m.A, m.B, start, u, plant.variable)
         try:
             parts = matrix_power(A, plant.variable)
         except NoClosedForm as error:
-            nothing = {"state": None, "output": None, "question": question_of(error), "factor": error.factor}
-            return cls(plant, method_name, {**shared, **nothing})
+            return cls(plant, method_name, {**answer, "question": question_of(error), "factor": error.factor})
         state, rows = Matrix.zeros(plant.order, 1), range(plant.order)
         for value, matrix in parts:
             state = state + (matrix @ z).select(rows, [0]) * value
         state, output = state.normal(), None
         if m.has_output:
             output = (m.C @ state if u is None else m.C @ state + m.D @ u).normal()
-        return cls(plant, method_name, {**shared, "state": state, "output": output})
+        return cls(plant, method_name, {**answer, "state": state, "output": output})
 
     def rate(self, e: Environment) -> Term:
         """Return x(k + 1)."""

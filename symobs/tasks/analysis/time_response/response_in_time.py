@@ -6,7 +6,7 @@ The answer is held to the differential equation and to the initial state, which 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NotRequired, Self, TypedDict
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.enclosure import is_number
@@ -18,6 +18,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.proof.derivation.builder import Builder, relation
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.time_response.damping_cases import (
+    DampingAnswer,
     DampingCases,
     Signs,
     exponential_claims,
@@ -39,6 +40,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
 )
 from symobs.tasks.analysis.time_response.response_plot import InputModel, exosystem, input_model, plot_response
 from symobs.tasks.result import holds
+from symobs.tasks.result.answers import named_found, those_found
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping
@@ -51,10 +53,30 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 
+class ResponseAsked(TypedDict):
+    """The initial state, the input as a function of the instant, its impulse, and an instant."""
+
+    initial: Matrix
+    input: Matrix | None
+    impulse: Matrix | None
+    at_time: Scalar | None
+
+
+class ResponseAnswer(ResponseAsked, DampingAnswer):
+    """State and output; the state after the impulse, e^{At}, and the motion from rest."""
+
+    start: Matrix
+    state: Matrix | None
+    output: Matrix | None
+    exponential: NotRequired[Matrix]
+    forced: NotRequired[Matrix]
+
+
 @dataclass
 class Response(DampingCases):
     """x(t) with x′ = A x + B u and x(0) = x₀, which has one solution, and y = C x + D u."""
 
+    answer: ResponseAnswer
     task: ClassVar[str] = "response"
     answered_by = ("state",)
     functions_of_time = {"x": "state", "x(t)": "state", "y": "output", "y(t)": "output"}
@@ -70,43 +92,51 @@ class Response(DampingCases):
         return (*super().fields_asked(given), *(("value",) if "at_time" in given else ()))
 
     @classmethod
-    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant; `asked` holds the initial state, the input in t, its impulse, and an instant."""
-        v = asked["impulse"]
-        start = asked["initial"] if v is None else asked["initial"] + plant.matrices.B @ v
-        shared = {**{name: asked[name] for name in cls.asked_for}, "start": start, "taken": taken, "chosen": {}}
+    def of(cls, plant: StateSpace, method_name: str, asked: ResponseAsked, taken: Signs) -> Self:
+        """Return the result for a plant."""
+        m, v, u = plant.matrices, asked["impulse"], asked["input"]
+        start = asked["initial"] if v is None else asked["initial"] + m.B @ v
+        answer: ResponseAnswer = {
+            "initial": asked["initial"],
+            "input": u,
+            "impulse": v,
+            "at_time": asked["at_time"],
+            "start": start,
+            "taken": taken,
+            "chosen": {},
+            "state": None,
+            "output": None,
+        }
         try:
             found, chosen = closed_form(plant, taken, sums=has_sums(plant))
-            forced = _motion_from_rest(plant, found, asked["input"])
+            forced = _motion_from_rest(plant, found, u)
         except NoClosedForm as error:
-            nothing = {"state": None, "output": None, "question": question_of(error), "factor": error.factor}
-            return cls(plant, method_name, {**shared, **nothing})
-        m, answer = plant.matrices, {**shared, "chosen": chosen, "exponential": found.matrix(TIME), "output": None}
+            return cls(plant, method_name, {**answer, "question": question_of(error), "factor": error.factor})
+        answer |= {"chosen": chosen, "exponential": found.matrix(TIME)}
         if forced is not None:
             answer["forced"] = forced if isinstance(forced, Matrix) else matrix_at(forced, TIME)
         if not found.is_closed:
             state = found.matrix(TIME) @ start + (start * 0 if forced is None else answer["forced"])
             if m.has_output:
                 seen = m.C @ state
-                through = forced is not None and m.has_feedthrough
-                answer["output"] = seen + m.D @ asked["input"] if through else seen
+                answer["output"] = seen + m.D @ u if u is not None and m.has_feedthrough else seen
             return cls(plant, method_name, {**answer, "state": state})
         table = product(found.table(), table_of(start))
         if isinstance(forced, tuple):
             table = _plus(table, forced)
         if m.has_output:
             outputs = product(table_of(m.C), table)
-            if forced is not None and m.has_feedthrough:
-                outputs = _plus(outputs, product(table_of(m.D), table_of(asked["input"])))
+            if u is not None and m.has_feedthrough:
+                outputs = _plus(outputs, product(table_of(m.D), table_of(u)))
             answer["output"] = matrix_at(outputs, TIME)
         return cls(plant, method_name, {**answer, "state": matrix_at(table, TIME)})
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time, and the initial state."""
-        names = ("initial", "input", "impulse", "exponential", "forced", "state", "output")
-        found = tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
-        return found if self.value_then is None else (*found, self.value_then)
+        answer = self.answer
+        motion = answer.get("exponential"), answer.get("forced"), answer["state"], answer["output"]
+        return those_found(answer["initial"], answer["input"], answer["impulse"], *motion, self.value_then)
 
     def claims(self) -> Iterator[Claim]:
         """Yield the differential equation, the start, and the output."""
@@ -114,10 +144,10 @@ class Response(DampingCases):
         if self.answer["state"] is None:
             return
         m, k, answer = self.plant.matrices, self.clock, self.answer
-        names = {f"x_{k}": "state", f"y_{k}": "output", f"u_{k}": "input", "x_0": "start"}
-        names |= {"exp_At": "exponential", "x_f": "forced"}
-        values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C, "D": m.D}
-        values |= {name: answer[key] for name, key in names.items() if answer.get(key) is not None}
+        values = {"A": m.A, "B": m.B, "C": m.C, "D": m.D, "x_0": answer["start"]}
+        found = {f"x_{k}": answer["state"], f"y_{k}": answer["output"], f"u_{k}": answer["input"]}
+        found |= {"exp_At": answer.get("exponential"), "x_f": answer.get("forced")}
+        values |= named_found(found)
         e = time_environment(self.plant, values, answer["at_time"] if k == "t" else None)
         if "exp_At" in values:
             yield from exponential_claims(e)
@@ -130,13 +160,14 @@ class Response(DampingCases):
             yield holds(e, "x_0 = {begun}", "x0 is the initial state and what the impulse adds", begun=begun)
         if answer["output"] is not None:
             yield holds(e, f"y_{k} = {self.seen}")
-        if self.value_then is not None:
-            yield holds(e, "{then} = {value}", then=self.at_instant(e), value=self.value_then)
+        if answer["at_time"] is not None:
+            yield holds(e, "{then} = {value}", then=self.at_instant(e, answer["at_time"]), value=self.value_then)
 
     @cached_property
     def value_then(self) -> Matrix | None:
         """The output, or the state of a plant without C, at the instant that is asked for."""
-        moving, instant = self.answer["state" if self.answer["output"] is None else "output"], self.answer["at_time"]
+        answer, instant = self.answer, self.answer["at_time"]
+        moving = answer["state"] if answer["output"] is None else answer["output"]
         return None if instant is None or moving is None else substitute(moving, {self.clock: instant}).normal()
 
     @property
@@ -145,10 +176,10 @@ class Response(DampingCases):
         letter, instant = "x" if self.answer["output"] is None else "y", self.answer["at_time"]
         return super().called if instant is None else {**super().called, f"{letter}({instant})": "value"}
 
-    def at_instant(self, e: Environment) -> Term:
+    def at_instant(self, e: Environment, instant: Scalar) -> Term:
         """Return y(T), or x(T)."""
         letter = f"{'x' if self.answer['output'] is None else 'y'}_{self.clock}"
-        return e[letter].at(self.clock, self.answer["at_time"])
+        return e[letter].at(self.clock, instant)
 
     def rate(self, e: Environment) -> Term:
         """Return x′."""
@@ -175,7 +206,7 @@ class Response(DampingCases):
     def fields(self) -> Mapping[str, Any]:
         """State and output in t; where there is none, the question that is open."""
         asked = self.answer.get("question")
-        found = {name: self.answer[name] for name in ("state", "output")}
+        found = {"state": self.answer["state"], "output": self.answer["output"]}
         if self.answer["at_time"] is not None:
             found["value"] = self.value_then
         return {**found, **({"question": asked} if asked else {})}
@@ -189,7 +220,7 @@ class Response(DampingCases):
     def is_drawn(self) -> bool:
         """Whether a picture can show the response: it is one function, in numbers."""
         m, u, start = self.plant.matrices, self.answer["input"], self.answer["start"]
-        data = [part for part in (m.A, m.B, m.C, m.D, start) if part is not None]
+        data = m.A, m.B, m.C, m.D, start
         if self.answer["state"] is None or self.plant.relations or any(part.names for part in data):
             return False
         return u is None or u.is_zero or self.input_model is not None
@@ -250,7 +281,8 @@ def _entry(matrix: Matrix) -> Matrix | Scalar:
 def write_branch(page: Builder, result: Response) -> None:
     """Write one branch."""
     answer, k, in_steps = result.answer, result.clock, result.clock == "k"
-    if answer.get("question") is not None:
+    state, instant = answer["state"], answer["at_time"]
+    if state is None:
         (tell_open_power if in_steps else tell_question)(page, answer["factor"])
         page.remark("response_not_given")
         return
@@ -282,12 +314,12 @@ def write_branch(page: Builder, result: Response) -> None:
         say = "output_forced"
     else:
         members, say = [members[0] + _forced(page, answer["forced"])], "response_state"
-    x = page.define(f"x_{k}", *members, answer["state"], say=say, answer=True, closing=False)
+    x = page.define(f"x_{k}", *members, state, say=say, answer=True, closing=False)
     if answer["output"] is not None:
         shown = result.seen, _entry(answer["output"])
         page.define(f"y_{k}", *shown, say="response_output", answer=True, closing=False)
-    if result.value_then is not None:
-        then = relation(result.at_instant(page.environment), _entry(result.value_then))
+    if instant is not None and result.value_then is not None:
+        then = relation(result.at_instant(page.environment, instant), _entry(result.value_then))
         page.equal(then, say="response_at_time", answer=True)
     moved = page.line(f"{{rate}} = {result.moved}", rate=result.rate(page.environment))
     page.verified("steps_checked" if in_steps else "response_checked", moved, start=relation(x.at(k, 0), x_0))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NotRequired, Self, TypedDict
 
 from symobs.exact import Matrix
 from symobs.exact.core.generators import substitute
@@ -21,11 +21,13 @@ from symobs.ground.errors import InputError
 from symobs.system import StateSpace
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.time_response.damping_cases import (
+    DampingAnswer,
     DampingCases,
     Signs,
     exponential_claims,
     from_zero,
     rate_of,
+    reject,
     time_environment,
 )
 from symobs.tasks.analysis.time_response.horizons import over_horizon, read_horizon
@@ -42,6 +44,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
 )
 from symobs.tasks.analysis.time_response.sampling_rules import RULES, SampledController, SampledPlant
 from symobs.tasks.result import Result, choose, holds, method, task
+from symobs.tasks.result.answers import those_found
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator, Mapping
@@ -55,10 +58,26 @@ if TYPE_CHECKING:
     from symobs.system.transfer_function_text import WrittenTransferFunction
 
 
+class HoldAsked(TypedDict):
+    """The sampling period."""
+
+    horizon: Scalar
+
+
+class HoldAnswer(HoldAsked, DampingAnswer):
+    """A_d and B_d, e^{At}, and ∫₀ᵗ e^{As} B ds."""
+
+    A_d: Matrix | None
+    B_d: Matrix | None
+    exponential: NotRequired[Matrix]
+    driven: NotRequired[Matrix]
+
+
 @dataclass
 class ZeroOrderHold(DampingCases):
     """A_d = Φ(T) with Φ′ = A Φ and Φ(0) = I, and B_d = ∫₀ᵀ Φ(t) B dt."""
 
+    answer: HoldAnswer
     task: ClassVar[str] = "zero_order_hold"
     letters = {"A": "A_zoh", "B": "B_zoh", "C": "C_zoh", "D": "D_zoh"}
     answered_by = ("A", "B")
@@ -67,19 +86,17 @@ class ZeroOrderHold(DampingCases):
     asked_for: ClassVar[tuple[str, ...]] = ("horizon",)
 
     @classmethod
-    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant; `asked` holds the sampling period."""
+    def of(cls, plant: StateSpace, method_name: str, asked: HoldAsked, taken: Signs) -> Self:
+        """Return the result for a plant."""
         period = asked["horizon"]
-        shared = {"horizon": period, "taken": taken, "chosen": {}}
+        answer: HoldAnswer = {"horizon": period, "taken": taken, "chosen": {}, "A_d": None, "B_d": None}
         try:
             found, chosen = closed_form(plant, taken, sums=has_sums(plant))
             driven = _driven(plant, found)
         except NoClosedForm as error:
-            nothing = {"A_d": None, "B_d": None, "question": question_of(error), "factor": error.factor}
-            return cls(plant, method_name, {**shared, **nothing})
-        at_period = {"A_d": found.matrix(period), "B_d": driven(period)}
-        answer = {"exponential": found.matrix(TIME), "driven": driven(TIME)}
-        return cls(plant, method_name, {**shared, **answer, **at_period, "chosen": chosen})
+            return cls(plant, method_name, {**answer, "question": question_of(error), "factor": error.factor})
+        answer |= {"chosen": chosen, "exponential": found.matrix(TIME), "driven": driven(TIME)}
+        return cls(plant, method_name, {**answer, "A_d": found.matrix(period), "B_d": driven(period)})
 
     @classmethod
     def fields_asked(cls, given: Collection[str]) -> tuple[str, ...]:
@@ -91,18 +108,21 @@ class ZeroOrderHold(DampingCases):
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time, at the period too."""
-        names = ("exponential", "driven", "A_d", "B_d")
-        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+        answer = self.answer
+        return those_found(answer.get("exponential"), answer.get("driven"), answer["A_d"], answer["B_d"])
 
     def claims(self) -> Iterator[Claim]:
         """Yield the differential equation and its start, the value at the period, and the integral."""
         yield from super().claims()
-        if self.answer["A_d"] is None:
+        A_d, B_d = self.answer["A_d"], self.answer["B_d"]
+        if (A_d is None) != (B_d is None):
+            reject("A_d and B_d are there together")
+        if A_d is None or B_d is None:
             return
         m, period = self.plant.matrices, self.answer["horizon"]
         values = {"A": m.A, "B": m.B, "exp_At": self.answer["exponential"], "driven": self.answer["driven"]}
         values |= {f"{name} at T": substitute(values[name], {"t": period}) for name in ("exp_At", "driven")}
-        e = time_environment(self.plant, {**values, "A_zoh": self.answer["A_d"], "B_zoh": self.answer["B_d"]})
+        e = time_environment(self.plant, {**values, "A_zoh": A_d, "B_zoh": B_d})
         Phi = letter("exp_At", e)
         yield from exponential_claims(e)
         yield holds(e, "A_zoh = {period}", period=Phi.at("t", period))
@@ -117,7 +137,8 @@ class ZeroOrderHold(DampingCases):
         Its sampling period is the number T, or left open.  Raises `InputError` where there is no closed form, and where
         the sign of a discriminant that is not known decides.
         """
-        if self.answer["A_d"] is None:
+        A_d, B_d = self.answer["A_d"], self.answer["B_d"]
+        if A_d is None or B_d is None:
             message = f"there is no sampled plant in closed form: what is open is {self.answer['question']}"
             raise InputError(message, where="plant.A", repair="put numbers in, and sample those")
         for delta in (*self.answer["chosen"], *self.answer["taken"]):
@@ -129,7 +150,7 @@ class ZeroOrderHold(DampingCases):
         if str(period) in period.names and symbols.sign(str(period)) == "real":
             symbols = replace(symbols, signs={**symbols.signs, str(period): "positive"})
         dt = period.fraction() if period.is_constant else True
-        return StateSpace(self.answer["A_d"], self.answer["B_d"], C, D, dt=dt, symbols=symbols)
+        return StateSpace(A_d, B_d, C, D, dt=dt, symbols=symbols)
 
     @property
     def as_plant(self) -> StateSpace:
@@ -173,16 +194,17 @@ def _integral(e: Environment, primitive: Term | Matrix, period: Scalar) -> Any:
 def _write_branch(page: Builder, result: ZeroOrderHold) -> None:
     """Write one branch."""
     answer, period = result.answer, result.answer["horizon"]
-    if answer.get("question") is not None:
+    A_d, B_d = answer["A_d"], answer["B_d"]
+    if A_d is None or B_d is None:
         tell_question(page, answer["factor"])
         page.remark("zero_order_hold_not_given")
         return
     found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]}, sums=has_sums(result.plant))
     tell_exponential(page, found, answer["exponential"])
     Phi = page["exp_At"]
-    page.define("A_zoh", Phi.at("t", period), answer["A_d"], say="zero_order_hold_held", answer=True, closing=False)
+    page.define("A_zoh", Phi.at("t", period), A_d, say="zero_order_hold_held", answer=True, closing=False)
     whole = page.term(_integral(page.environment, answer["driven"], period))
-    page.define("B_zoh", whole, answer["B_d"], say="zero_order_hold_integral", answer=True, closing=False)
+    page.define("B_zoh", whole, B_d, say="zero_order_hold_integral", answer=True, closing=False)
     start = page.line("exp_At(t = 0) = I")
     balance = page.line("A B_zoh = (A_zoh - I) B")
     page.verified(
@@ -194,7 +216,7 @@ def _write_branch(page: Builder, result: ZeroOrderHold) -> None:
 
 
 @method("zero_order_hold/integral", source="astrom1997, ch. 2")
-def by_integral(plant: StateSpace, period: Any) -> ZeroOrderHold:
+def by_integral(plant: StateSpace, period: Scalar) -> ZeroOrderHold:
     """Integrate the entries of e^{At} B as sums of tⁿ e^{αt} cos βt and sin βt: B_d = ∫₀ᵀ e^{At} B dt, A_d = e^{AT}."""
     return ZeroOrderHold.of(plant, "integral", {"horizon": period}, {})
 

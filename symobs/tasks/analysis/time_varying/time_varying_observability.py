@@ -165,8 +165,9 @@ class TimeVaryingObservability(Result):
         stacked = block([[e[f"N_{k}"]] for k in range(order)])
         yield holds(e, "O = {stacked}", stacked=stacked)
         yield from self._rank_claims(e)
-        if answer["gramian"] is not None and None in (answer["transition_matrix"], answer["gramian_in_time"]):
-            reject("the Gramian stands without what it is the integral of")
+        W, G = answer["gramian"], answer["gramian_in_time"]
+        if (W is None) != (G is None) or (W is not None and answer["transition_matrix"] is None):
+            reject("the Gramian stands with Φ and as a function of its end")
         if answer["transition_matrix"] is not None:
             yield from self._transition_claims(e)
         if answer["forced"] is not None:

@@ -102,6 +102,12 @@ class GainDesign(Result):
         pencil = e["s"] @ identity(order, e) - e["A"] + cls.gain_term(e)
         return relation(pencil.apply("det"), e["phi"])
 
+    @property
+    def gain(self) -> Matrix | None:
+        """L or K; None where there is none to write."""
+        found: Matrix | None = self.answer[self.letter]
+        return found
+
     # -- construction ------------------------------------------------------------------------------------------------
 
     @classmethod

@@ -21,12 +21,14 @@ from symobs.stability.frequency_plots import bode_picture, nyquist_picture
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.stability_region.delayed_region import (
     DelayedLoopResult,
+    LoopPolynomials,
     delayed_loop,
     rounded,
     tell,
     write_delayed_loop,
 )
-from symobs.tasks.design.margins.margins import MARGINS, Margins
+from symobs.tasks.analysis.stability_region.margins import MARGINS, NO_MARGINS, MarginNumbers
+from symobs.tasks.design.margins.margins import Margins, MarginsAnswer
 from symobs.tasks.result import page_of
 
 if TYPE_CHECKING:
@@ -38,16 +40,29 @@ if TYPE_CHECKING:
     from symobs.system import StateSpace
 
 
+class DelayedMarginsAnswer(MarginsAnswer, LoopPolynomials):
+    """P and N, in the place of P + N and P."""
+
+
 @dataclass
 class DelayedMargins(DelayedLoopResult, Margins):
     """The margins of N/P e^{−sT}; none where the closed loop is not stable."""
+
+    answer: DelayedMarginsAnswer
 
     @classmethod
     def of_loop(cls, plant: StateSpace, controller: object) -> Self:
         """Return the margins of the loop of a plant with a dead time and a controller; raises `InputError`."""
         plant, written, loop = delayed_loop(plant, controller, None)
         assert plant.delay is not None  # noqa: S101 - the caller has looked
-        return cls(plant, "boundary", {**loop, **_margins(loop, plant.delay)}, None, written)
+        answer: DelayedMarginsAnswer = {
+            **loop,
+            **_margins(loop, plant.delay),
+            "closed": None,
+            "opened": None,
+            "open": None,
+        }
+        return cls(plant, "boundary", answer, None, written)
 
     def claims(self) -> Iterator[Claim | Statement]:
         """Yield what P and N are, how many poles are unstable, and the margins."""
@@ -88,15 +103,16 @@ class DelayedMargins(DelayedLoopResult, Margins):
         return found
 
 
-def _margins(loop: Mapping[str, Any], delay: Scalar) -> dict[str, Any]:
+def _margins(loop: LoopPolynomials, delay: Scalar) -> MarginNumbers:
     """Return the margins of N/P e^{−sT} by name, None of a loop that is not stable; the slowest pole is not sought."""
     distances = loop_with(loop["P"], loop["N"], delay)
     if unstable_after(distances.loop) != 0:
-        return dict.fromkeys(MARGINS)
+        return NO_MARGINS
     low, high = interval_around_one(distances.loop)
-    found = {"gain_down": exact_value(low), "gain_up": exact_value(high), "phase_deg": distances.phase(MARGIN_DIGITS)}
     return {
-        **found,
+        "gain_down": exact_value(low),
+        "gain_up": exact_value(high),
+        "phase_deg": distances.phase(MARGIN_DIGITS),
         "modulus": distances.modulus(MARGIN_DIGITS),
         "peak": distances.peak(MARGIN_DIGITS),
         "slowest": None,

@@ -18,7 +18,7 @@ from symobs.exact.algebraic.nyquist import nyquist, told_of
 from symobs.exact.numerals.written_digits import in_digits as matrix_in_digits
 from symobs.formula.tree import Decimals, Environment
 from symobs.ground.dataclass import dataclass
-from symobs.ground.errors import InputError
+from symobs.ground.errors import CertificateRejected, InputError
 from symobs.ground.later import Later
 from symobs.proof.certificate.claims import Certificate, Claim, Statement
 from symobs.proof.derivation.builder import Builder, predicate
@@ -27,7 +27,15 @@ from symobs.system.specification import desired_polynomial, in_common_field, rea
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import given
 from symobs.tasks.analysis.stability_region.loop_polynomials import loop_polynomials, monic
-from symobs.tasks.analysis.stability_region.margins import NotRational, gains_of, margins_of, numbers
+from symobs.tasks.analysis.stability_region.margins import (
+    MARGINS,
+    NO_MARGINS,
+    MarginNumbers,
+    NotRational,
+    gains_of,
+    margins_of,
+    numbers,
+)
 from symobs.tasks.analysis.stability_region.stability_region import stability_region
 from symobs.tasks.analysis.stability_region.stability_region_page import write_line, write_loop
 from symobs.tasks.design.compensator.compensator import observer_based, observer_order
@@ -35,6 +43,7 @@ from symobs.tasks.design.full_order.observer import ObserverDesign
 from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import design_of
 from symobs.tasks.result import Result, choose, equality, holds, method, page_of, poles_of, task
+from symobs.tasks.result.answers import named_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -48,8 +57,6 @@ if TYPE_CHECKING:
 
 #: The margins of loops with a dead time are of the type below, and imported where there is one.
 _dead_time = Later("symobs.tasks.design.margins.delayed_margins")
-#: The margins, as they are called.
-MARGINS = ("gain_down", "gain_up", "phase_deg", "modulus", "peak", "slowest")
 #: The polynomial of the closed loop, the matrix of what is added to the plant, and where the loop is cut.
 _LOOPS = {
     "state_feedback": ("polynomial", None, "inputs"),
@@ -60,13 +67,19 @@ _LOOPS = {
 }
 
 
+class MarginsAnswer(MarginNumbers):
+    """P + N and P, None where there is no design or they are no polynomials; `open` says why no margins are found."""
+
+    closed: Scalar | None
+    opened: Scalar | None
+    open: str | None
+
+
 @dataclass
 class Margins(Result):
-    """The margins of the loop with the polynomials P and P + N, of a design or of a controller; none where it is not stable.
+    """The margins of the loop with the polynomials P and P + N, of a design or of a controller; none where it is not stable."""
 
-    `open` says why they are not found.
-    """
-
+    answer: MarginsAnswer
     design: Result | None
     written: WrittenTransferFunction | None
 
@@ -83,16 +96,17 @@ class Margins(Result):
         method_name: str = "boundary",
     ) -> Self:
         """Return the margins of the loop P + N, P; those of no loop where the design does not exist."""
-        answer: dict[str, Any] = dict.fromkeys(("closed", "opened", "open", *MARGINS))
-        if loop is not None:
-            answer["closed"], answer["opened"] = closed, opened = loop
+        found, question = NO_MARGINS, None
+        closed, opened = loop or (None, None)
+        if closed is not None and opened is not None:
             try:
-                answer |= margins_of(closed, opened, plant.variable, plant.dt)
+                found = margins_of(closed, opened, plant.variable, plant.dt)
             except NotRational as error:
-                answer["open"] = f"{error} is no rational number"
-            if None in (answer[name] for name in MARGINS) and answer["slowest"] is not None and answer["gain_up"]:
-                answer |= {**dict.fromkeys(MARGINS), "open": "the digits of the margins are not certain"}
-        if answer["open"] is None and "k" in plant.symbols.signs and "k" not in plant.field.names:
+                question = f"{error} is no rational number"
+            if None in found.values() and found["slowest"] is not None and found["gain_up"]:
+                found, question = NO_MARGINS, "the digits of the margins are not certain"
+        answer: MarginsAnswer = {"closed": closed, "opened": opened, "open": question, **found}
+        if question is None and "k" in plant.symbols.signs and "k" not in plant.field.names:
             # k multiplies the gain on the page, whatever sign a name of the data has that does not occur in them
             signs = {name: sign for name, sign in plant.symbols.signs.items() if name != "k"}
             plant = plant.with_symbols(replace(plant.symbols, signs=signs))
@@ -103,12 +117,20 @@ class Margins(Result):
         """Those of the page of the design."""
         return {} if self.design is None else self.design.free_signals
 
+    @property
+    def loop(self) -> tuple[Scalar, Scalar] | None:
+        """P + N and P."""
+        closed, opened = self.answer["closed"], self.answer["opened"]
+        return None if closed is None or opened is None else (closed, opened)
+
     def claims(self) -> Iterator[Claim | Statement]:
         """Yield what P and P + N are, the slowest root, the ends of the gain, and the digits of the rest."""
         answer, plant = self.answer, self.plant
-        if answer["closed"] is None:
+        if self.loop is None:
+            if named_found({**answer, "open": None}):
+                raise CertificateRejected("there are no margins, and no polynomials, without a loop")
             return
-        m, closed, opened = plant.matrices, answer["closed"], answer["opened"]
+        m, (closed, opened) = plant.matrices, self.loop
         values: dict[str, Any] = {"A": m.A, "chi_o": opened, "chi_cl": closed}
         own = None if self.design is None else _LOOPS[self.design.task][1]
         if self.design is not None and own is not None:
@@ -139,11 +161,11 @@ class Margins(Result):
 
     @property
     def _coefficients(self) -> list[list[Fraction]]:
-        return [[*numbers(self.answer[name], self.plant.variable)] for name in ("closed", "opened")]
+        return [[*numbers(polynomial, self.plant.variable)] for polynomial in self.loop or ()]
 
     @property
     def _is_rational(self) -> bool:
-        entries = (c for name in ("closed", "opened") for c in self.answer[name].coefficients(self.plant.variable))
+        entries = (c for polynomial in self.loop or () for c in polynomial.coefficients(self.plant.variable))
         return all(entry.is_constant for entry in entries)
 
     @property
@@ -154,14 +176,14 @@ class Margins(Result):
     def _are_certain(self) -> bool:
         """Whether angle, distance and peak round as they are written, by enclosures with twice the digits."""
         loop = Loop.of(*self._coefficients, discrete=self.plant.is_discrete)
-        found = {"phase_deg": loop.phase, "modulus": loop.modulus, "peak": loop.peak}
-        unit = Decimal(1).scaleb(-MARGIN_DIGITS)
-        for name, value in found.items():
-            told, finer = self.answer[name], value(2 * MARGIN_DIGITS)
+        answer, unit = self.answer, Decimal(1).scaleb(-MARGIN_DIGITS)
+        written = answer["phase_deg"], answer["modulus"], answer["peak"]
+        for told, value in zip(written, (loop.phase, loop.modulus, loop.peak), strict=True):
+            finer = value(2 * MARGIN_DIGITS)
             if INFINITE in (told, finer):
                 if told != finer:
                     return False
-            elif finer is None or abs(Decimal(told) - Decimal(finer)) > unit / 2 + unit / 1000:
+            elif told is None or finer is None or abs(Decimal(told) - Decimal(finer)) > unit / 2 + unit / 1000:
                 return False
         return True
 
@@ -181,15 +203,16 @@ class Margins(Result):
     def fields(self) -> Mapping[str, Any]:
         """The margins: ends and slowest exactly, the others as decimals in texts; and the polynomials."""
         found: dict[str, Any] = {name: _written(self.answer[name]) for name in MARGINS}
-        found |= {"closed_loop_polynomial": self.answer["closed"], "open_loop_polynomial": self.answer["opened"]}
-        if self.answer["closed"] is not None and self._is_rational:
-            found |= nyquist(self.answer["closed"], self.answer["opened"], self.plant.variable)
-        return found | ({"question": self.answer["open"]} if self.answer["open"] else {})
+        closed, opened = self.loop or (None, None)
+        found |= {"closed_loop_polynomial": closed, "open_loop_polynomial": opened}
+        if self.loop is not None and self._is_rational:
+            found |= nyquist(*self.loop, self.plant.variable)
+        return found | ({"question": question} if (question := self.answer["open"]) else {})
 
     def __getattr__(self, name: str) -> Any:
         """Return a margin as a number of SymPy or a decimal, any other answer as usual."""
-        if name in MARGINS and self.answer[name] is not None:
-            return public(self.answer[name])
+        if name in MARGINS and (found := {margin: self.answer[margin] for margin in MARGINS}[name]) is not None:
+            return public(found)
         return super().__getattr__(name)
 
     def keys(self) -> tuple[str, ...]:
@@ -213,7 +236,10 @@ class Margins(Result):
     @cached_property
     def region(self) -> StabilityRegion | None:
         """Where P + kN is stable as k moves; None where k does not stand in it."""
-        moved = self.answer["opened"] + Scalar.symbol("k") * (self.answer["closed"] - self.answer["opened"])
+        if self.loop is None:
+            return None
+        closed, opened = self.loop
+        moved = opened + Scalar.symbol("k") * (closed - opened)
         if "k" not in moved.names:
             return None
         found: Any = stability_region(moved, dt=self.plant.dt, parameters="k")
@@ -408,58 +434,56 @@ def write_margins(page: Builder, result: Margins) -> None:
         result.design.write(page)
     else:
         given(page)
-    if result.answer["closed"] is None:
+    answer, loop = result.answer, result.loop
+    if loop is None:
         return
     with page.section("margins"):
-        _polynomials(page, result)
-        if result.answer["open"]:
-            page.remark("margins_open", question=result.answer["open"])
+        _polynomials(page, result, *loop)
+        if question := answer["open"]:
+            page.remark("margins_open", question=question)
             return
-        _frequency_response(page, result)
-        if result.answer["modulus"] is None:
+        _frequency_response(page, result, loop)
+        if answer["modulus"] is None:
             page.conclude("margins_none", predicate("unstable", page["chi_cl"]))
             return
         page.conclude("margins_stable", predicate("stable", page["chi_cl"]))
         _gains(page, result)
-        told = {"modulus": result.answer["modulus"], "peak": result.answer["peak"]}
-        told |= {} if result.answer["phase_deg"] == INFINITE else {"phase": result.answer["phase_deg"]}
+        phase = None if answer["phase_deg"] == INFINITE else answer["phase_deg"]
+        told = named_found({"modulus": answer["modulus"], "peak": answer["peak"], "phase": phase})
         page.remark("margins_are" if "phase" in told else "margins_any_phase", **_rounded(page, told))
-        _delay(page, result)
+        _delay(page, loop)
 
 
-def _frequency_response(page: Builder, result: Margins) -> None:
+def _frequency_response(page: Builder, result: Margins, loop: tuple[Scalar, Scalar]) -> None:
     """Write how often the frequency response surrounds −1, and where it meets the real axis and the unit circle."""
     if not result._is_rational:  # noqa: SLF001 - its own page
         return
-    loop = result.answer["closed"], result.answer["opened"], page.plant.variable
     clock = "_discrete" if page.plant.is_discrete else ""
-    (counts,) = told_of("counts", *loop)
+    (counts,) = told_of("counts", *loop, page.plant.variable)
     page.remark("margins_counts" if result.fields["encirclements"] is not None else "margins_on_boundary", **counts)
     if result.fields["closed_loop_polynomial"] == result.fields["open_loop_polynomial"]:
         return
     for kind in ("axis", "level"):
-        for told in told_of(kind, *loop):
+        for told in told_of(kind, *loop, page.plant.variable):
             page.remark(f"margins_{kind}{clock}", **_rounded(page, told))
-    _pictures(page, result)
+    _pictures(page, *loop)
 
 
-def _pictures(page: Builder, result: Margins) -> None:
+def _pictures(page: Builder, closed: Scalar, opened: Scalar) -> None:
     """Draw the Bode and the Nyquist picture."""
     variable = page.plant.variable
-    loop = (result.answer["closed"] - result.answer["opened"]) / result.answer["opened"]
+    loop = (closed - opened) / opened
     N, P = loop.numerator, loop.denominator
     subject = page("(chi_cl - chi_o) / chi_o")
     page.plot(bode_picture(N, P, variable), subject)
-    crossed = [
-        float(told["value"]) for told in told_of("axis", result.answer["closed"], result.answer["opened"], variable)
-    ]
+    crossed = [float(told["value"]) for told in told_of("axis", closed, opened, variable)]
     page.plot(nyquist_picture(N, P, variable, crossed), subject)
 
 
-def _delay(page: Builder, result: Margins) -> None:
+def _delay(page: Builder, loop: tuple[Scalar, Scalar]) -> None:
     """Write the delay margin of a stable loop."""
     clock = "_discrete" if page.plant.is_discrete else ""
-    for told in told_of("delay", result.answer["closed"], result.answer["opened"], page.plant.variable):
+    for told in told_of("delay", *loop, page.plant.variable):
         page.remark(f"margins_delay{clock}" if told else "margins_no_delay", **_rounded(page, told))
 
 
@@ -467,11 +491,11 @@ def _rounded(page: Builder, told: Mapping[str, str]) -> dict[str, Term]:
     return {name: page.term(Decimals(Scalar.of(Fraction(value)))) for name, value in told.items()}
 
 
-def _polynomials(page: Builder, result: Margins) -> None:
+def _polynomials(page: Builder, result: Margins, whole: Scalar, cut: Scalar) -> None:
     """Write P and P + N."""
     if result.design is None:
         assert result.written is not None  # noqa: S101 - the other way to a loop
-        write_loop(page, result.written, result.answer["closed"])
+        write_loop(page, result.written, whole)
         return
     kind, opened = result.design.task, page["det(pencil(A))"]
     closed: list[Term] = []
@@ -483,12 +507,12 @@ def _polynomials(page: Builder, result: Margins) -> None:
         own = page["A_c"] if page.defines("A_c") else page.set("A_c", result.design.fields["compensator_matrix"])
         opened = opened @ own.pencil.apply("det")
     place = "output" if kind == "observer" else "input"
-    page.define("chi_o", opened, page.value(result.answer["opened"]), say=f"margins_cut_{place}", closing=False)
+    page.define("chi_o", opened, page.value(cut), say=f"margins_cut_{place}", closing=False)
     if not closed:
         response = page["C pencil(A)^-1 B"]
         response = response + page["D"] if page.plant.matrices.has_feedthrough else response
         closed = [page("chi_o (1 + F {response})", response=response)]
-    page.define("chi_cl", *closed, page.value(result.answer["closed"]), say="margins_closed", closing=False)
+    page.define("chi_cl", *closed, page.value(whole), say="margins_closed", closing=False)
 
 
 def _gains(page: Builder, result: Margins) -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypedDict
 
 from symobs.exact import (
     Ideal,
@@ -43,6 +43,7 @@ from symobs.tasks.analysis.modes.modes import polynomial_of
 from symobs.tasks.analysis.strata.strata import common_places, places, solved
 from symobs.tasks.design.optimal.spectral_factor import NoFactor, reduced, stable_factors, with_signs
 from symobs.tasks.result import Case, Result, choose, equality, holds
+from symobs.tasks.result.answers import named_found, those_found
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -74,10 +75,29 @@ class Obstacle(NamedTuple):
     polynomial: Scalar
 
 
+class GainByLetter(TypedDict, total=False):
+    """K of a regulator, or L of a filter."""
+
+    K: Matrix | None
+    L: Matrix | None
+
+
+class OptimalAnswer(GainByLetter):
+    """P, the polynomial of the loop and its factors where square roots write them; digits; an obstacle, or an open question."""
+
+    P: Matrix | None
+    polynomial: Scalar | None
+    factors: tuple[Scalar, ...] | None
+    digits: Enclosure | None
+    obstacle: Obstacle | None
+    question: str | None
+
+
 @dataclass
 class OptimalGain(Result):
     """P and the gain with their equations, and a stable loop; or why there is none."""
 
+    answer: OptimalAnswer
     weights: Mapping[str, Matrix]
     #: The signs that parameters need for the weights to have theirs, beyond the declared ones.
     needed: tuple[Condition, ...] = ()
@@ -117,16 +137,23 @@ class OptimalGain(Result):
     ) -> Self:
         """Return the optimal gain, exact and in certain digits, or the obstacle, or the question that is open."""
         regulator = cls.regulator_of(plant, weights)
-        names = (cls.letter, "P", "polynomial", "factors", "digits", "obstacle", "question")
-        answer: dict[str, Any] = dict.fromkeys(names)
+        answer: OptimalAnswer = {
+            **cls._by_letter(None),
+            "P": None,
+            "polynomial": None,
+            "factors": None,
+            "digits": None,
+            "obstacle": None,
+            "question": None,
+        }
         reason = ""
         try:
             answer["obstacle"] = _obstacle(regulator, plant)
             if answer["obstacle"] is not None:
                 return cls(plant, method_name, answer, weights, needed)
             found = _exact_solution(regulator, plant)
-            gain, polynomial = cls.turned(found.gain), found.polynomial
-            answer |= {cls.letter: gain, "P": found.P, "polynomial": polynomial, "factors": found.factors}
+            gain = cls._by_letter(cls.turned(found.gain))
+            answer = {**answer, **gain, "P": found.P, "polynomial": found.polynomial, "factors": found.factors}
         except NoFactor as error:
             reason = str(error)
         if is_numeric(regulator):
@@ -136,6 +163,24 @@ class OptimalGain(Result):
             answer["question"] = reason
         return cls(plant, method_name, answer, weights, needed)
 
+    @classmethod
+    def _by_letter(cls, gain: Matrix | None) -> GainByLetter:
+        return {"K": gain} if cls.letter == "K" else {"L": gain}
+
+    @property
+    def gain(self) -> Matrix | None:
+        """K, or L."""
+        return self.answer["K"] if self.letter == "K" else self.answer["L"]
+
+    @property
+    def exact(self) -> Solution | None:
+        """P, K or L, the polynomial of the loop and its factors, where square roots write them."""
+        answer = self.answer
+        P, gain, polynomial, factors = answer["P"], self.gain, answer["polynomial"], answer["factors"]
+        if P is None or gain is None or polynomial is None or factors is None:
+            return None
+        return Solution(P, gain, polynomial, factors)
+
     @cached_property
     def regulator(self) -> Regulator:
         """The regulator that this problem is or is dual to."""
@@ -144,8 +189,7 @@ class OptimalGain(Result):
     @property
     def data(self) -> Mapping[str, Scalar | Matrix]:
         """The gain and P besides the plant's matrices: pages speak of these."""
-        exact = {self.letter: self.answer[self.letter], "P_x": self.answer["P"]}
-        return {**super().data, **({} if self.answer["P"] is None else exact)}
+        return {**super().data, **named_found({self.letter: self.gain, "P_x": self.answer["P"]})}
 
     @property
     def named_data(self) -> Mapping[str, Any]:
@@ -176,15 +220,17 @@ class OptimalGain(Result):
 
     def values(self) -> dict[str, Matrix | Scalar]:
         """Return the data and the exact answers by their letters; `noise` is GWGᵀ."""
-        m, answer = self.plant.matrices, self.answer
-        found: dict[str, Any] = {"A": m.A, **self.weights, self.letter: answer[self.letter], "P": answer["P"]}
+        m = self.plant.matrices
+        found = {"A": m.A, **self.weights, **named_found({self.letter: self.gain, "P": self.answer["P"]})}
         found |= {"B": m.B} if self.letter == "K" else {"C": m.C, "noise": self.regulator.Q, "shared": self.regulator.N}
-        return {name: value for name, value in found.items() if value is not None}
+        return {**found}
 
     def claims(self) -> Iterator[Claim | Statement]:
         """Yield the signs of the weights; Riccati's equation, the gain and a stable loop, or the obstacle; the digits."""
-        answer, digits, regulator = self.answer, self.answer["digits"], self.regulator
-        has_P = answer["P"] is not None or digits is not None
+        answer, digits, exact, regulator = self.answer, self.answer["digits"], self.exact, self.regulator
+        if exact is None and any((self.gain, answer["P"], answer["polynomial"], answer["factors"])):
+            raise CertificateRejected("the gain, P and the polynomial with its factors are there together")
+        has_P = exact is not None or digits is not None
         if [has_P, answer["obstacle"] is not None, answer["question"] is not None].count(True) != 1:
             raise CertificateRejected("there is a P, an obstacle, or an open question")
         signs = self.plant.symbols.signs
@@ -202,12 +248,11 @@ class OptimalGain(Result):
             yield Statement(
                 "the digits are those of the stabilising solution", lambda: _shown(digits.is_proved(regulator))
             )
-        if answer["P"] is not None:
-            yield from self._about_exact()
+        if exact is not None:
+            yield from self._about_exact(exact.polynomial, exact.factors)
 
-    def _about_exact(self) -> Iterator[Claim | Statement]:
+    def _about_exact(self, polynomial: Scalar, factors: tuple[Scalar, ...]) -> Iterator[Claim | Statement]:
         values, plant = self.values(), self.plant
-        polynomial = self.answer["polynomial"]
         values["p"] = polynomial
         signs = with_signs(plant.symbols.signs, *values.values())
         relations = identities(values.values())[1]
@@ -221,7 +266,7 @@ class OptimalGain(Result):
             yield holds(e, equation)
         pencil = e["s"] @ identity(plant.order, e) - self.loop(of)
         yield equality(pencil.apply("det"), of("p"), e, "the polynomial is that of the loop")
-        v, factors = plant.variable, self.answer["factors"]
+        v = plant.variable
         is_stable = stability(polynomial, v, signs, discrete=plant.is_discrete).verdict == "yes"
         yield Statement("the loop is asymptotically stable", lambda: _shown(is_stable))
         are_monic = all(factor.coefficients(v)[0].is_one for factor in factors)
@@ -230,7 +275,7 @@ class OptimalGain(Result):
         yield equality(of("p"), product_of(moved), e, "the polynomial is the product of the factors")
         if not is_numeric(self.regulator):
             even, s = self.even, Scalar.symbol(plant.variable)
-            p = product_of(self.answer["factors"])
+            p = product_of(factors)
             whole = p * p.substitute({plant.variable: -s})
             e = Environment(variable=plant.variable, relations=identities([p, even])[1])
             yield equality(whole, even * (-1) ** plant.order, e, "p(s)*p(-s) is the polynomial of H")
@@ -320,7 +365,7 @@ class OptimalGain(Result):
     @cached_property
     def holds_where(self) -> tuple[Condition, ...]:
         """The domain, existence, and the denominators of the answer."""
-        values = [value for value in (self.answer[self.letter], self.answer["P"]) if value is not None]
+        values = those_found(self.gain, self.answer["P"])
         signs = with_signs(self.plant.symbols.signs, *values)
         found = nonzero("existence", vanishing_factors(self.existence, signs))
         below = vanishing_factors([value.common_denominator() for value in values], signs)
@@ -386,8 +431,13 @@ class OptimalGain(Result):
         if factors is not None:
             moved = [to_disc(factor, v) for factor in factors] if plant.is_discrete else factors
             poles = tuple(root for factor in moved for root in roots_of(factor, v))
-        found = {self.letter: answer[self.letter], "P": answer["P"], "polynomial": answer["polynomial"], "poles": poles}
-        gain, asked, m = answer[self.letter], answer["question"], plant.matrices
+        gain, asked, m = self.gain, answer["question"], plant.matrices
+        found: dict[str, Any] = {
+            self.letter: gain,
+            "P": answer["P"],
+            "polynomial": answer["polynomial"],
+            "poles": poles,
+        }
         if self.letter == "K":
             found["closed_loop_matrix"] = None if gain is None else (m.A - m.B @ gain).normal()
         else:
@@ -398,7 +448,7 @@ class OptimalGain(Result):
     @cached_property
     def numbers(self) -> Mapping[str, Any]:
         """The fields, and where no square roots write them the certain digits of gain and P as rational numbers."""
-        digits = self.decimals if self.answer[self.letter] is None else {}
+        digits = self.decimals if self.gain is None else {}
         exact = {name: Matrix.of([[Fraction(e) for e in row] for row in rows]) for name, rows in digits.items()}
         of_gain = self.design_kind.of_given(self.plant, exact[self.letter]).fields if exact else {}
         return {**self.fields, **{name: of_gain[name] for name in self.of_loop if name in of_gain}, **exact}
@@ -598,7 +648,7 @@ def to_disc(polynomial: Scalar, variable: str, *, reduce: bool = True) -> Scalar
 
 
 class Solution(NamedTuple):
-    """P, the gain of the regulator, the polynomial of its loop, and the factors of that of H, in s or w."""
+    """P, the gain, the polynomial of its loop, and the factors of that of H, in s or w."""
 
     P: Matrix
     gain: Matrix

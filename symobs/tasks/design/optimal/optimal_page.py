@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from symobs.formula.tree.term import Term
     from symobs.proof.derivation.builder import Builder
-    from symobs.tasks.design.optimal.optimal_gain import Obstacle, OptimalGain
+    from symobs.tasks.design.optimal.optimal_gain import Obstacle, OptimalGain, Solution
 
 #: Up to this order the coefficients of the loop are compared on the page.
 _MATCHED_UP_TO = 3
@@ -113,10 +113,10 @@ def _solve(page: Builder, result: OptimalGain) -> None:
         page.remark("optimal_open")
     elif result.answer["obstacle"] is not None:
         _tell_obstacle(page, result, result.answer["obstacle"])
-    elif result.answer["P"] is None:
+    elif result.exact is None:
         _tell_digits(page, result)
     else:
-        _tell_exact(page, result)
+        _tell_exact(page, result, result.exact)
 
 
 def _problem(page: Builder, result: OptimalGain) -> tuple[Term, Term, Term, Term]:
@@ -148,38 +148,36 @@ def _shared(result: OptimalGain) -> str:
 # -- exact -------------------------------------------------------------------------------------------------------------
 
 
-def _tell_exact(page: Builder, result: OptimalGain) -> None:
+def _tell_exact(page: Builder, result: OptimalGain, exact: Solution) -> None:
     """Write c, its stable factor p, the gain, P, the check and what follows."""
-    plant, answer, letter = page.plant, result.answer, result.letter
+    plant, letter = page.plant, result.letter
     held = [condition.expression for condition in result.holds_where if condition.kind != "domain"]
     if held:
         page.assume("optimal_provided", *held)
     A, B, Q, R = _problem(page, result)
     if not _tell_root_square(page, result):
         _tell_pencil(page, A, B, Q, R)
-    page.define("p_s", page.value(answer["polynomial"]), say="optimal_factor", closing=False)
+    page.define("p_s", page.value(exact.polynomial), say="optimal_factor", closing=False)
     named = (root for name in page.forms if (root := function_named(name)) is not None)
     for index, root in enumerate(named):
         letter_of, say = page.value(root.value), "optimal_next_root" if index else "optimal_root"
         square = relation(letter_of**2, page.value(root.argument))
         page.conclude(say, root=square, positive=relation(letter_of, ">", 0))
     _tell_locus(page, Q, R)
-    if _open_radicands(page, [answer["P"], *answer["factors"]]):
+    if _open_radicands(page, [exact.P, *exact.factors]):
         page.remark("optimal_roots_real")
     matched = result.regulator.B.shape[1] == 1 and plant.order <= _MATCHED_UP_TO and _is_controllable(result)
     if matched:
-        _tell_matching(page, result)
-    page.define("P_x", page.value(answer["P"]), say="optimal_P", answer=True, closing=False)
+        _tell_matching(page, result, exact.gain)
+    page.define("P_x", page.value(exact.P), say="optimal_P", answer=True, closing=False)
     if not matched:
-        page.define(letter, page.value(answer[letter]), say="optimal_gain", answer=True, closing=False)
+        page.define(letter, page.value(exact.gain), say="optimal_gain", answer=True, closing=False)
 
     equations = result.equations(discrete=plant.is_discrete, cross=not result.regulator.N.is_zero)
     written = (each.replace("noise", _noise(result)).replace("shared", _shared(result)) for each in equations)
     riccati, gain = (page.line(each, **_LETTERS) for each in written)
     page.verified("optimal_checked", riccati=riccati, gain=gain)
-    chi = page.define(
-        f"chi_{letter}", _pencil(page, result, page[letter]).apply("det"), answer["polynomial"], silent=True
-    )
+    chi = page.define(f"chi_{letter}", _pencil(page, result, page[letter]).apply("det"), exact.polynomial, silent=True)
     found = "optimal_feedback_found" if letter == "K" else "optimal_filter_found"
     page.conclude(found, predicate("stable", chi))
     if letter == "L" and plant.is_discrete:
@@ -246,11 +244,10 @@ def _is_controllable(result: OptimalGain) -> bool:
     return not Krylov.of(result.regulator.A.T, result.regulator.B.T).determinant.is_zero
 
 
-def _tell_matching(page: Builder, result: OptimalGain) -> None:
+def _tell_matching(page: Builder, result: OptimalGain, gain: Matrix) -> None:
     """Write the polynomial of the loop in unknown entries of the gain, and the gain."""
     _tell_unknown(page, result)
-    letter = result.letter
-    page.define(letter, page.value(result.answer[letter]), say="optimal_matched_gain", answer=True, closing=False)
+    page.define(result.letter, page.value(gain), say="optimal_matched_gain", answer=True, closing=False)
 
 
 def _tell_unknown(page: Builder, result: OptimalGain) -> bool:

@@ -11,7 +11,7 @@ import pytest
 
 import symobs
 from symobs import StateSpace
-from symobs.ground.errors import InputError
+from symobs.ground.errors import CertificateRejected, InputError
 from tests.kit import SERVO
 
 
@@ -68,3 +68,10 @@ def test_margins_of_compensators_are_those_of_python_control(observer: str, dt: 
 def test_what_has_no_margins_is_refused(design: Any, said: str) -> None:
     with pytest.raises(InputError, match=said):
         symobs.margins(design())
+
+
+@pytest.mark.parametrize("name", ["closed", "opened"])
+def test_no_margins_stand_without_their_loop(name: str) -> None:
+    found = symobs.margins(StateSpace("[0 1; 0 0]", "[0; 1]", "[1 0]"), poles="-1, -2")
+    with pytest.raises(CertificateRejected, match="without a loop"):
+        found.with_answer(name, None)

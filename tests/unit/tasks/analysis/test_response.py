@@ -13,6 +13,7 @@ from scipy.linalg import expm  # type: ignore[import-untyped]
 import symobs
 from symobs import StateSpace
 from symobs.applications.checking import Checked
+from symobs.exact import Matrix
 from symobs.formula.figures import TimeResponse
 from symobs.ground.errors import CertificateRejected, InputError
 from symobs.proof.derivation.steps import Plot
@@ -31,9 +32,8 @@ def test_an_impulse_without_effect_and_a_wrong_one() -> None:
     plant = StateSpace("[-1]", "[1]", "[1]")
     assert "x₀ = B·0 = 0" in symobs.response(plant, impulse=0).to("text")
     found = symobs.response(plant, impulse=1)
-    wrong = {**found.answer, "impulse": found.answer["impulse"] * 2}
     with pytest.raises(CertificateRejected, match="x0 is the initial state and what the impulse adds"):
-        type(found)(found.plant, found.method, wrong)
+        found.with_answer("impulse", Matrix.of([[2]]))
 
 
 def test_what_is_in_resonance_is_a_case() -> None:
