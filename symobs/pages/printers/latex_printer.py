@@ -154,12 +154,12 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(width, level, "".join(sources), height)
 
     def between(self, left: LatexBox, right: LatexBox) -> LatexBox | None:
-        r"""Return `\cdot` before a number, a thin space beside a word."""
+        r"""Return `\cdot` before a number, a thin space beside a word and before the degree of a root."""
         if right.source[0].isdigit() or (left.source[-1].isdigit() and _NUMERIC_FRACTION.match(right.source)):
             return LatexBox(0.7, Level.PRODUCT, r"\cdot ")
         if self.running and left.width + right.width > _WIDE:
             return LatexBox(0.0, Level.PRODUCT, r"\allowbreak ")
-        is_word = left.source.startswith(_WORD) or right.source.startswith(_WORD)
+        is_word = left.source.startswith(_WORD) or right.source.startswith((_WORD, r"\sqrt["))
         return LatexBox(0.17, Level.PRODUCT, r"\,") if is_word else None
 
     def grouped(self, box: LatexBox) -> LatexBox:

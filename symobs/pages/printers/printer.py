@@ -265,10 +265,16 @@ class Printer(FormulaWriter[B]):
         if function.kind == "sqrt":
             inner = function_named(next(iter(function.argument.names), "")) if is_leaf(function.argument) else None
             if inner is not None and inner.kind == "sqrt" and inner.name not in self.symbols:
-                return self.root(self.scalar(inner.argument), 4)
-            return self.root(argument)
+                return self.root(self.radicand(inner.argument), 4)
+            return self.root(self.radicand(function.argument))
         is_plain = argument.level >= Level.PRODUCT and not isinstance(formula_of(function.argument, ""), Quotient)
         return self._wave(function, argument if is_plain else self.grouped(argument))
+
+    def radicand(self, value: Scalar) -> B:
+        """Return what stands under a root: a fraction of products with a slash."""
+        written = formula_of(value, self.variable)
+        is_short = isinstance(written, Quotient) and not any(isinstance(part, Sum) for part in children(written))
+        return (self.styled(in_exponent=True) if is_short else self).scalar(value)
 
     def power_of(self, function: PowerOf) -> B:
         """Return λᵏ, Re (σ + iω)ᵏ, or δ(k, j)."""
