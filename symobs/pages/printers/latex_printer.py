@@ -84,7 +84,7 @@ class LatexPrinter(Printer[LatexBox]):
         """Return display mathematics without delimiters or line breaks, such as a label in a drawing."""
         return (self.relation(item) if isinstance(item, Relation) else self.typeset(item)).source
 
-    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
+    def display(self, relations: Sequence[Relation], *, boxed: int = 0, end: str = ".") -> str:
         """Return a display: one line, centred lines, or lines aligned at the first sign of each relation."""
         rows, are_aligned = Layout(self, self.width, boxed=boxed, end=end).rows(relations)
         if len(rows) == 1 and not are_aligned:

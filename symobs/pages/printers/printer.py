@@ -112,8 +112,8 @@ class Printer(FormulaWriter[B]):
         """Return mathematics for a line of text, without delimiters."""
 
     @abstractmethod
-    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
-        """Return a whole display, lines broken where long; `boxed` marks the last member as the answer."""
+    def display(self, relations: Sequence[Relation], *, boxed: int = 0, end: str = ".") -> str:
+        """Return a whole display, lines broken where long; the last members of so many relations at the end are boxed."""
 
     # -- letters --------------------------------------------------------------------------------------------------
 
