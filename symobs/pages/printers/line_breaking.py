@@ -374,7 +374,7 @@ class Layout(Generic[B]):
     def rows(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """Return the rows, and whether they are aligned (else each is centred)."""
         relations = [self._without_repetition(relation) for relation in relations]
-        if self.boxed and all({"=", "≈"}.isdisjoint(relation.operators) for relation in relations):
+        if self.boxed and all("=" not in each.operators and {*each.operators} != {"≈"} for each in relations):
             return self._inequalities(relations)
         last = len(relations) - 1
         framed = [index > last - self.boxed for index in range(len(relations))]
