@@ -28,6 +28,7 @@ from symobs.pages.page.blocks import (
     PictureBlock,
     References,
     TableBlock,
+    Title,
     Verified,
     in_rows,
     with_few_boxes,
@@ -97,6 +98,9 @@ def narrate(document: Document) -> tuple[Block, ...]:
     page.emit_given(together)
     if is_final:  # the question has said what is given, and where it comes from
         page.blocks[:] = [replace(title_of(document, language), source="")]
+    elif document.is_below:
+        page.blocks[:] = [Title(document.title, "", ())]
+        page.emit_steps([each for step in together for each in _roundings(step)])
     for index, steps in enumerate(parts):
         page.time = document.derivations[index].variable, document.derivations[index].discrete
         if index in apart:
@@ -130,6 +134,12 @@ def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, 
             together += statement
             seen.update((relation.members[0], relation) for relation in relations)
     return together, apart
+
+
+def _roundings(step: Step) -> Iterator[Step]:
+    """Yield what a page of decimals says of its digits."""
+    inner = step.steps if isinstance(step, Section) else (step,)
+    yield from (each for each in inner if isinstance(each, Note) and each.sentence.key == "rounded_digits")
 
 
 def _signs_at_once(steps: Sequence[Step]) -> list[Step]:
