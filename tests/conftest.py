@@ -30,7 +30,7 @@ SKIPS_FAIL = os.environ.get("SYMOBS_REQUIRE_TOOLS") == "1"
 # The same examples in every run, and nothing that depends on how fast the machine is.
 settings.register_profile(
     "symobs",
-    max_examples=100 if FULL else 30,
+    max_examples=100 if FULL else 20,
     derandomize=True,
     database=None,
     deadline=None,

@@ -157,7 +157,7 @@ class BodePicture:
     """The modulus of a loop in decibels and its phase in degrees at places of the boundary of stability.
 
     `across` are the decimal logarithms of the frequency there, in discrete time of the angle.  The window is that of the
-    logarithms and of the decibels; phases fill theirs.
+    logarithms and of the decibels; phases fill theirs.  The asymptotes of the modulus bend at the moduli of poles and zeros.
     """
 
     contour: tuple[Place, ...]
@@ -167,6 +167,7 @@ class BodePicture:
     window: tuple[Interval, Interval]
     discrete: bool = False
     delay: Fraction = Fraction(0)
+    asymptotes: tuple[Place, ...] = ()
 
     @property
     def gain_margin(self) -> tuple[Place, Place] | None:

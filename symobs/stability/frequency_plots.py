@@ -85,7 +85,24 @@ def bode_picture(N: Scalar, P: Scalar, variable: str, delay: Fraction = _NONE) -
     inner = sorted(levels)[len(levels) // 50 : len(levels) - len(levels) // 50]
     window = (Fraction(across[0]), Fraction(across[-1])), range_around([Fraction(x) for x in (*inner, 0)], spread=True)
     over, modulus, turned = (tuple(map(Fraction, each)) for each in (across, levels, phases))
-    return BodePicture(tuple(contour), over, modulus, turned, window, discrete, delay)
+    bent = () if discrete else _asymptotes(N / P, variable, across[0], across[-1])
+    return BodePicture(tuple(contour), over, modulus, turned, window, discrete, delay, bent)
+
+
+def _asymptotes(loop: Scalar, variable: str, low: float, high: float) -> tuple[Place, ...]:
+    """Return where the asymptotes of the modulus begin, bend and end: each factor s − p counts as the larger of ω and |p|."""
+    parts = loop.numerator, loop.denominator
+    zeros, poles = ([abs(root) for root in _roots(each, variable)] for each in parts)
+    above, below = (_numbers(each, variable)[0] for each in parts)
+    corners = {log10(size) for size in (*zeros, *poles) if size > _ON}
+
+    def level(x: float) -> float:
+        sizes = [sum(max(x, log10(size) if size > _ON else x) for size in each) for each in (zeros, poles)]
+        return 20 * (log10(abs(above / below)) + sizes[0] - sizes[1])
+
+    return tuple(
+        (Fraction(x), Fraction(level(x))) for x in sorted({low, high, *(x for x in corners if low < x < high)})
+    )
 
 
 def _boundary(roots: Sequence[complex], *, discrete: bool, delay: Fraction) -> list[complex]:

@@ -142,7 +142,7 @@ def scalars(point: dict[str, Fraction]) -> dict[str, Scalar]:
     return {name: Scalar.of(value) for name, value in point.items()}
 
 
-@pytest.mark.parametrize("name", every(3, NAMES))
+@pytest.mark.parametrize("name", every(5, NAMES))
 def test_claims_hold_wherever_the_conditions_do(name: str) -> None:
     problem, results = solved(name)
     names = names_of(problem, results)
@@ -174,7 +174,7 @@ def says(result: Result, at: Setting) -> int:
     return len(parts)
 
 
-@pytest.mark.parametrize("name", every(3, NAMES))
+@pytest.mark.parametrize("name", every(5, NAMES))
 def test_answers_are_defined_wherever_the_conditions_hold(name: str) -> None:
     """No denominator is left out: each factor of one is a condition or excluded by the declared signs.
 
@@ -207,7 +207,7 @@ def zeros(problem: Problem, names: list[str], factor: Scalar, seed: object) -> I
                 yield {**point, name: -constant / lead}
 
 
-@pytest.mark.parametrize("name", every(3, NAMES))
+@pytest.mark.parametrize("name", every(5, NAMES))
 def test_where_a_domain_condition_fails_there_is_no_plant(name: str) -> None:
     problem, results = solved(name)
     names, m = names_of(problem, results), problem.plant.matrices
@@ -235,7 +235,7 @@ def ranked(result: Any) -> list[tuple[Any, bool]]:
     return [(result, result.task in {"controllability", "state_feedback"})] if square and result.existence else []
 
 
-@pytest.mark.parametrize("name", every(3, NAMES))
+@pytest.mark.parametrize("name", every(5, NAMES))
 def test_where_an_existence_factor_vanishes_the_rank_drops_and_the_case_is_right(name: str) -> None:
     problem, results = solved(name)
     names, signs = names_of(problem, results), problem.plant.symbols.signs

@@ -48,7 +48,7 @@ pytestmark = pytest.mark.slow
 TASKS = sorted(tasks())
 #: Every method by its registered name, and every task with the method chosen by itself.
 METHODS = [*sorted(methods()), *(f"{task}/auto" for task in TASKS)]
-PICKLED = every(4, METHODS)
+PICKLED = every(6, METHODS)
 FORMS = ("json", "text", "latex")
 
 A, B, C = [["0", "1"], ["-a/m", "-2"]], [["0"], ["1/m"]], [["1", "c"]]
@@ -128,7 +128,7 @@ def test_floats_in_a_specification_are_refused_with_the_repair(task: str, name: 
     assert "exact value" in caught.value.repair
 
 
-@pytest.mark.parametrize("name", every(4, METHODS))
+@pytest.mark.parametrize("name", every(6, METHODS))
 def test_input_is_not_changed(name: str) -> None:
     given_lists = deepcopy((A, B, C))
     matrices = [sympy.Matrix(2, 2, [0, 1, -3, sympy.Symbol("a")]), sympy.Matrix([0, 1]), sympy.Matrix([[1, 0]])]
@@ -147,7 +147,7 @@ def test_input_is_not_changed(name: str) -> None:
     assert poles == kept
 
 
-@pytest.mark.parametrize("name", every(2, METHODS))
+@pytest.mark.parametrize("name", every(4, METHODS))
 def test_a_question_in_sympy_is_the_question_in_text(name: str) -> None:
     a, s, task = sympy.Symbol("a", positive=True), sympy.Symbol("s"), name.partition("/")[0]
     matrices = sympy.Matrix([[0, 1], [-1 / a, -2]]), sympy.Matrix([0, 1]), sympy.ImmutableMatrix([[1, a]])
@@ -209,7 +209,7 @@ def mutants(value: Any) -> Iterator[Any]:
         yield value - 1
 
 
-@pytest.mark.parametrize("name", every(4, METHODS, 1))
+@pytest.mark.parametrize("name", every(6, METHODS, 1))
 def test_a_tampered_answer_is_rejected(name: str) -> None:
     result = example(name)
     rejected = 0
@@ -280,7 +280,7 @@ SAMPLES: dict[str, tuple[tuple[Any, Any, Any], list[str]]] = {
 }
 
 
-@pytest.mark.parametrize("name", every(2, METHODS, 1))
+@pytest.mark.parametrize("name", every(4, METHODS, 1))
 def test_attributes_are_sympy_objects_and_never_of_the_kernel(name: str) -> None:
     for plant, poles in SAMPLES.values():
         if not is_for(name, symobs.StateSpace(*plant), poles):

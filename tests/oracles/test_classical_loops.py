@@ -1,4 +1,4 @@
-"""Sixty loops of textbooks against 50-digit roots, fine counts, python-control, and printed answers."""
+"""Loops of textbooks against 50-digit roots, fine counts, python-control, and printed answers."""
 
 from __future__ import annotations
 

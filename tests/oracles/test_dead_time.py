@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -12,8 +13,11 @@ import pytest
 import sympy
 
 import symobs
-from symobs.ground.errors import ProblemErrors
+from symobs.exact import Scalar
+from symobs.formula.tree import Decimals, Predicate, Relation
+from symobs.ground.errors import DerivationRejected, ProblemErrors
 from symobs.problem import validate
+from symobs.proof.derivation import Conclude, Inequalities, RegionSummary
 
 mpmath.mp.dps = 50
 
@@ -220,3 +224,41 @@ def test_an_approximation_is_that_of_python_control(order: int, table: str) -> N
     for s in (1j, 2 + 1j):
         ours = complex(found.transfer_function.subs("s", s))
         assert ours == pytest.approx(np.polyval(above, s) / np.polyval(below, s) / (s + 1), rel=1e-9)
+
+
+def changed(result: Any, step: Any, other: Any) -> Any:
+    """Return the derivation with a step of its last section replaced, or with one more at its end."""
+    *before, section = result.derivation.steps
+    inside = [other if each is step else each for each in section.steps] + ([other] if step is None else [])
+    return replace(result.derivation, steps=(*before, replace(section, steps=tuple(inside))))
+
+
+@pytest.mark.parametrize(("loop", "delay"), [each[:2] for each in LOOPS])
+def test_the_box_has_the_gains_and_no_others(loop: str, delay: str) -> None:
+    """The ends are those of `test_the_largest_gain_solves_the_characteristic_equation`, and a moved one is rejected."""
+    known = plant(loop, delay, symbols={"k": "real"})
+    result: Any = symobs.stability_region(known, controller="k", parameters=["k"])
+    *_, (_, high) = result.fields["intervals_decimal"]
+    assert high in result.to("text") or "pi" in result.fields["intervals"][-1][1]
+    step = next(s for s in result.derivation.steps[-1].steps if isinstance(s, Inequalities | RegionSummary))
+    told = [step.fact.where] if isinstance(step, Inequalities) else step.parts
+    first, name, _ = told[-1][0].members
+    for moved in (Fraction(high) + Fraction(1, 10**6), Fraction(high) / 2):
+        wrong = (Relation((first, name, Decimals(Scalar.of(moved))), ("<", "<")),)
+        other: Any
+        if isinstance(step, Inequalities):
+            other = replace(step, fact=replace(step.fact, where=wrong))
+        else:
+            other = replace(step, parts=(*told[:-1], wrong))
+        with pytest.raises(DerivationRejected):
+            changed(result, step, other).check()
+
+
+def test_the_function_of_a_loop_with_a_dead_time_has_no_property_of_a_polynomial() -> None:
+    """s + 1 + k e^{−s/2} has positive coefficients for k > 0, and is not stable for all of them."""
+    known = plant("1/(s+1)", "1/2", symbols={"k": "positive"})
+    result: Any = symobs.stability_region(known, controller="k", parameters=["k"])
+    closed = next(s for s in result.derivation.steps[-1].steps if "dead_time_closed" in repr(s))
+    claimed = Conclude(None, (Predicate("stable", closed.relation.members[0]),))
+    with pytest.raises(DerivationRejected, match="that the function"):
+        changed(result, None, claimed).check()

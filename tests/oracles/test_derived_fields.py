@@ -207,7 +207,7 @@ def errors_of(part: Any, point: Point, plant: tuple[Rows, Rows, Rows], s: Fracti
     return {"error_matrix": errors, "polynomial": characteristic_at(errors, s), "K": K, "L": L}
 
 
-@pytest.mark.parametrize("name", every(3, EXAMPLES))
+@pytest.mark.parametrize("name", every(5, EXAMPLES))
 def test_derived_fields_are_what_plain_fractions_give(name: str) -> None:
     for part in parts(name):
         hold_in_fractions(part)
@@ -226,7 +226,7 @@ def hold_in_fractions(part: Result) -> None:
     assert met >= 2
 
 
-@pytest.mark.parametrize("name", every(2, asking("transfer_function")))
+@pytest.mark.parametrize("name", every(4, asking("transfer_function")))
 def test_a_transfer_function_is_made_of_its_poles_and_zeros(name: str) -> None:
     for part in parts(name, "transfer_function"):
         P = part.answer["transfer_function"]

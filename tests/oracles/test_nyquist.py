@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 from fractions import Fraction
@@ -120,7 +121,9 @@ def test_a_wrong_frequency_response_is_seen() -> None:
     moved = replace(bode, across=tuple(x + 1 for x in bode.across))
     left = replace(nyquist, contour=tuple((-x, y) for x, y in nyquist.contour))
     narrow = replace(nyquist, window=((Fraction(0), Fraction(1)), nyquist.window[1]))
-    for picture in (turned, moved, left, narrow):
+    (x, y), *rest = bode.asymptotes
+    tilted, cut = replace(bode, asymptotes=((x, y + 1), *rest)), replace(bode, asymptotes=((x, y), rest[-1]))
+    for picture in (turned, moved, left, narrow, tilted, cut):
         assert [*faults_of_frequency(picture, loop, "s", discrete=False)]
 
 
@@ -142,3 +145,29 @@ def test_the_bars_of_the_bode_picture_are_the_margins(numbers: tuple[list[int], 
         (x, end), (_, level) = bar
         assert 10 ** float(x) == pytest.approx(where, rel=0.02)
         assert float(end - level) == pytest.approx(margin, rel=0.02, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "slopes"),
+    [
+        (([4, 8], [1, 10, 0, 0]), [-40, -20, -40]),
+        (([3], [1, 0.2, 4]), [0, -40]),
+        (([1, 0], [1, 1, 100, 100]), [20, 0, -40]),
+    ],
+    ids=str,
+)
+def test_the_asymptotes_bend_at_roots_and_meet_the_curve_far_away(numbers: Any, slopes: list[int]) -> None:
+    """The slopes in dB per decade are found by hand, the corners by NumPy; at its ends the curve is near."""
+    s = Scalar.symbol("s")
+    above, below = (
+        sum((Scalar.of(Fraction(str(c))) * s**k for k, c in enumerate(p[::-1])), Scalar.of(0)) for p in numbers
+    )
+    picture = bode_picture(above, below, "s")
+    places = [(float(x), float(y)) for x, y in picture.asymptotes]
+    found = [(d - b) / (c - a) for (a, b), (c, d) in itertools.pairwise(places)]
+    assert found == pytest.approx(slopes)
+    corners = sorted({round(math.log10(abs(r)), 6) for p in numbers for r in np.roots(p) if abs(r) > 1e-9})
+    assert [x for x, _ in places[1:-1]] == pytest.approx(corners, abs=1e-6)
+    for (x, y), at in ((places[0], 0), (places[-1], -1)):
+        assert picture.across[at] == pytest.approx(x)
+        assert float(picture.levels[at]) == pytest.approx(y, abs=0.3)

@@ -201,7 +201,7 @@ def every_spoiled(found: Problem) -> Iterator[tuple[str, dict[str, Any]]]:
                 yield (f"{key}.{name}", whole | {key: changed}) if key in tasks else (name, whole | changed)
 
 
-@pytest.mark.parametrize("path", every(3, FILES), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", every(6, FILES), ids=lambda path: path.stem)
 def test_every_spoiled_value_is_noticed(path: Path, record_property: Callable[[str, object], None]) -> None:
     found, solutions = solved(path)
     results = found.viewed(solutions)

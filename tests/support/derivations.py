@@ -95,6 +95,7 @@ from tests.support.algebra import (
     transposed,
 )
 from tests.support.algebra import PI as NUMBER_PI
+from tests.support.claims.claims_with_dead_time import are_ends
 from tests.support.regions import region_facts as regions
 
 if TYPE_CHECKING:
@@ -401,6 +402,9 @@ class World:
     def survey(self, step: RegionSummary) -> Iterator[tuple[str, Any]]:
         """Yield of which polynomial it is, whether the parts are where it is stable, and the findings."""
         yield "property stable", single(self.value(step.polynomial))
+        if (value := self.polynomial_of(step.polynomial)) is not None and any(map(function_named, value.names)):
+            yield from self.gains(value, step.parts)
+            return
         signs = {name: self.signs.get(name, "real") for name in self.names_of(step.polynomial)}
         samples = list(regions.points(tuple(signs), signs, self.seed))
 
@@ -506,6 +510,9 @@ class World:
     def region(self, fact: HoldsExactlyWhere) -> Iterator[tuple[str, Any]]:
         """Yield whether some inequalities hold exactly where a polynomial is stable, at points."""
         about = fact.property.subject
+        if (value := self.polynomial_of(about)) is not None and any(map(function_named, value.names)):
+            yield from self.gains(value, [fact.where])
+            return
         wrong = 0
         said = {name for relation in fact.where for member in relation.members for name in _symbols(member)}
         names = {*said, *self.names_of(about)}
@@ -515,6 +522,16 @@ class World:
             except ZeroDivisionError:  # there is no such function there
                 continue
         yield "=", Fraction(wrong)
+
+    def gains(self, value: Scalar, parts: Sequence[Sequence[Relation]]) -> Iterator[tuple[str, Any]]:
+        """Yield whether P + k N e^{−sT} is stable in the open intervals of k that are told, and not just outside."""
+        (name,) = (name for name in value.names if function_named(name))
+        (lag,), (moved, opened) = [f for f in (function_named(name),) if f], value.coefficients(name)
+        (k,) = moved.names - {self.variable}
+        N, P = (coefficients_at(each, self.variable, {k: Fraction(1)}) for each in (moved, opened))
+        delay = -coefficients_at(lag.argument, self.variable, {})[0]
+        ends = [[float(self.value(relation.members[place])) for place in (0, 2)] for (relation,) in parts]
+        yield "=", Fraction(sum(not are_ends(P, N, float(delay), low, high) for low, high in ends))
 
     def move_to(self, equations: Sequence[Scalar]) -> None:
         """Let λ, or a parameter, be a root of the one equation that holds: a rational one, or one of 60 digits."""

@@ -21,6 +21,11 @@ def every(step: int, found: Iterable[T], start: int = 0) -> list[T]:
 
 
 def seeds(quick: int, total: int = 200) -> list[Any]:
-    """Return seeds: a few for the quick tests, forty for the slow ones, all of them with SYMOBS_FULL=1."""
-    slow = range(quick, total if FULL else 40)
+    """Return seeds: a few for the quick tests, sixteen for the slow ones, all of them with SYMOBS_FULL=1."""
+    slow = range(quick, total if FULL else 16)
     return [*range(quick), *(pytest.param(seed, marks=pytest.mark.slow) for seed in slow)]
+
+
+def tried(count: int) -> int:
+    """Return how many examples of a long property Hypothesis draws: a third, all of them with SYMOBS_FULL=1."""
+    return count if FULL else count // 3

@@ -335,7 +335,7 @@ def read_answer(given: str | Mapping[str, Any], where: str = "answer") -> Answer
     if len(given.encode(errors="surrogatepass")) > MAX_BYTES:
         message = f"the answer is larger than {MAX_BYTES // 1024} kB"
         raise ProblemErrors((InputError(message, where=where, repair="hand in the answer alone"),))
-    text = typed(given)
+    text = typed(_LONG_WORD.sub("…", given))
     if is_of_tables(text):
         data = parse(text, where)
         if text.lstrip().startswith("{") and not {"answer", "step"} & data.keys():  # values by name alone
@@ -470,6 +470,8 @@ def _without_exceptions(lines: Iterable[tuple[int, str]]) -> tuple[list[tuple[in
     return kept, exceptions
 
 
+#: No name and no number of anybody: the time in which patterns look for them grows with the square of the length.
+_LONG_WORD = re.compile(r"[^\W\d_]\w{300,}|\d{4300,}")
 #: What is so for some values of the parameters.
 _OF_PARAMETERS = {"rank", "verdict"}
 

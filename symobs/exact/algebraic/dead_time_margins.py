@@ -48,7 +48,7 @@ _SHORTEST = Fraction(1, 2**40)
 #: The digits after the point of what JSON tells of a number without a closed form.
 LONG_DIGITS = 12
 #: What a sentence tells as a word.
-WORDS_OF_DEAD_TIME = ("before", "after", "around", "number")
+WORDS_OF_DEAD_TIME = ("before", "after", "around")
 #: Points below the last crossover at which it is looked at first.
 _FIRST_POINTS = 64
 
@@ -262,11 +262,6 @@ def told_of_dead_time(kind: str, opened: Scalar, moved: Scalar, delay: Scalar, s
             return [{"omega": _certain(_root_of(x), LOCUS_DIGITS)} for x in distances.crossovers]
         case "bound":
             return [{"bound": rounded_to(loop.decided[0], LOCUS_DIGITS)}]
-        case "intervals" | "one":
-            found = [{"low": digits_of(low), "high": digits_of(high)} for low, high, _ in loop.intervals(sign)]
-            return found if kind == "intervals" or len(found) == 1 else []
-        case "number":
-            return [{"number": str(len(loop.intervals(sign)))}]
         case "never":
             return [] if loop.intervals(sign) else [{}]
         case "unstable":

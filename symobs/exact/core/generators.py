@@ -469,6 +469,12 @@ def symbols_in(value: Scalar | Matrix) -> frozenset[str]:
     return frozenset(names)
 
 
+def stands_inside(name: str, value: object) -> bool:
+    """Return whether a name stands inside of a function of a value, as s does in P(s) + k N(s) e^{−sT}."""
+    found = map(function_named, value.names) if isinstance(value, Scalar) else ()
+    return any(function is not None and name in function.symbols for function in found)
+
+
 def letters_outside(value: Scalar) -> list[str]:
     """Return the plain symbols of a value that stand in none of its functions: an equation can be solved for these."""
     inside = {symbol for name in value.names if (found := function_named(name)) for symbol in found.symbols}

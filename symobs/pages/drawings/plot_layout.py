@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     #: The name of a curve, its range, and its lines in a frame.
     _Panel = tuple[Content, tuple[float, float], Callable[[Frame], list[tuple[Point, ...]]]]
-    _Bar = tuple[Place, Place] | None
+    _Mark = tuple[str, Sequence[Place]]  # in a style
 
 WIDEST, HIGHEST = 270.0, 160.0  # points
 _LINE, _LONGEST_END = 290.0, 0.3
@@ -54,6 +54,8 @@ _COMPONENTS = ("path", "path 2", "path 3", "path 4")
 _BESIDE_ESTIMATE = {False: ("path", "state 2", "state 3"), True: ("estimate", "estimate 2", "estimate 3")}
 #: Signals whose largest values differ by more than this factor have an axis each, of this height and distance.
 _ONE_AXIS, _PANEL, _BETWEEN_PANELS = 4, 48.0, 26.0
+#: The height of a panel over the logarithm of the frequency.
+_DECADES = 84.0
 _SIGNS = {"stable": "dot", "unstable": "cross", "excluded": "ring"}
 
 
@@ -321,7 +323,7 @@ def _branches(picture: BranchPicture, measure: Measure) -> Scene:
 
 
 def _bode(picture: BodePicture, measure: Measure) -> Scene:
-    """Return modulus and phase one below the other over the logarithm of the frequency, with a bar for each margin."""
+    """Return modulus and phase one below the other over the logarithm of the frequency, with the asymptotes and the margins."""
 
     def drawn_in(heights: Sequence[Fraction]) -> Callable[[Frame], list[tuple[Point, ...]]]:
         return lambda frame: frame.lines(zip(picture.across, heights, strict=True))
@@ -331,8 +333,14 @@ def _bode(picture: BodePicture, measure: Measure) -> Scene:
         ("dB", _decimal(picture.window[1]), drawn_in(picture.levels)),
         ("deg", (min(phases[0], -180.0), max(phases[1], phases[0] + 1)), drawn_in(picture.phases)),
     ]
-    axis, bars = "theta" if picture.discrete else "omega", (picture.gain_margin, picture.phase_margin)
-    return _stacked(_decimal(picture.window[0]), axis, panels, measure, decades=True, bars=bars)
+    beside: tuple[list[_Mark], list[_Mark]] = [("estimate 2", picture.asymptotes)], []
+    if picture.gain_margin is not None:
+        beside[0].append(("piece", picture.gain_margin))
+    if picture.phase_margin is not None:
+        level = picture.phase_margin[1][1]
+        beside[1].extend([("piece", picture.phase_margin), ("zero", [(x, level) for x in picture.window[0]])])
+    axis = "theta" if picture.discrete else "omega"
+    return _stacked(_decimal(picture.window[0]), axis, panels, measure, decades=True, beside=beside)
 
 
 # -- responses ----------------------------------------------------------------------------------------------------------
@@ -402,26 +410,25 @@ def _stacked(
     measure: Measure,
     *,
     decades: bool = False,
-    bars: Sequence[_Bar] = (),
+    beside: Sequence[Sequence[_Mark]] = (),
 ) -> Scene:
-    """Return panels one below the other over one horizontal axis, of logarithms with `decades`, with a bar in each."""
+    """Return panels one below the other over one horizontal axis, of logarithms with `decades`, with marks in each."""
     strokes: list[Stroke] = []
     texts: list[TextLabel] = []
+    size = _DECADES if decades else _PANEL
     for row, (name, (low, high), lines) in enumerate(reversed(panels)):
-        up = row * (_PANEL + _BETWEEN_PANELS)
+        up = row * (size + _BETWEEN_PANELS)
         room = (high - low) / 20
-        frame = Frame(window, (low - room, high + room), WIDEST, _PANEL)
+        frame = Frame(window, (low - room, high + room), WIDEST, size)
         axes, written = _axes(frame, (symbol(axis), name), measure, decades=decades)
         runs = [Stroke(line, "zero") for line in _zero_lines(frame)] + axes
         runs += [Stroke(line, "path") for line in lines(frame)]
-        if bars and (bar := bars[-1 - row]) is not None:
-            runs += [Stroke(line, "piece") for line in frame.lines(bar)]
-            if bar[1][1]:  # the level of −180°, where 0 has a line already
-                runs += [Stroke(line, "zero") for line in frame.lines([(x, bar[1][1]) for x in window])]
+        for style, points in beside[-1 - row] if beside else ():
+            runs += [Stroke(line, style) for line in frame.lines(points)]
         strokes += [replace(run, points=tuple((x, y + up) for x, y in run.points)) for run in runs]
         shown = written if not row else [text for text in written if text.anchor != "north" and text is not written[0]]
         texts += [replace(text, place=(text.place[0], text.place[1] + up)) for text in shown]
-    height = len(panels) * (_PANEL + _BETWEEN_PANELS) - _BETWEEN_PANELS
+    height = len(panels) * (size + _BETWEEN_PANELS) - _BETWEEN_PANELS
     whole = whole_of(strokes, texts, measure)
     return Scene(Rectangle(0.0, 0.0, WIDEST, height), whole, (), tuple(strokes), (), (), tuple(texts))
 

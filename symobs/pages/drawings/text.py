@@ -158,6 +158,9 @@ def _bode(picture: BodePicture, printer: TextPrinter) -> str:
     phases = min(picture.phases), max(*picture.phases, min(picture.phases) + 1)
     for name, heights, ends in (("dB", picture.levels, picture.window[1]), ("deg", picture.phases, phases)):
         grid = _grid((across, ends), lambda _x, _y: " ")
+        for (x, y), (u, v) in pairwise(picture.asymptotes) if name == "dB" else ():
+            for k in range(_COLUMNS):
+                _put(grid, (across, ends), (x + (u - x) * k / _COLUMNS, y + (v - y) * k / _COLUMNS), ".")
         for place in zip(picture.across, heights, strict=True):
             _put(grid, (across, ends), place, "*")
         axis = "theta" if picture.discrete else "omega"

@@ -119,6 +119,8 @@ def _sentences(picture: Drawn) -> Iterator[Sentence]:
                 yield caption_sentence("indented")
         case BodePicture(discrete=discrete):
             yield caption_sentence("bode_discrete" if discrete else "bode")
+            if picture.asymptotes:
+                yield caption_sentence("bode_asymptotes")
             if picture.gain_margin or picture.phase_margin:
                 yield caption_sentence("bode_margins")
         case BranchPicture(axes=(parameter, state)):

@@ -241,7 +241,7 @@ class LatexPrinter(Printer[LatexBox]):
         r"""Return `e^{-t/2}`, `e` of 1: fractions in the exponent are written with a slash."""
         if argument.is_one:
             return LatexBox(0.47, Level.ATOM, "e")
-        exponent = self.styled(in_exponent=True).scalar(argument)
+        exponent = self.styled(in_exponent=True).exponent(argument)
         return LatexBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, f"e^{{{exponent.source}}}")
 
     def root(self, argument: LatexBox, degree: int = 2) -> LatexBox:

@@ -284,7 +284,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         """Return the exponential, e of 1: fractions in its exponent with a slash."""
         if argument.is_one:
             return MathmlBox(0.47, Level.ATOM, ("<mi>e</mi>",))
-        exponent = self.styled(in_exponent=True).scalar(argument)
+        exponent = self.styled(in_exponent=True).exponent(argument)
         element = f"<msup><mi>e</mi>{exponent.one}</msup>"
         return MathmlBox(0.47 + widths.SCRIPT * exponent.width, Level.POWER, (element,))
 

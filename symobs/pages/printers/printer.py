@@ -276,6 +276,10 @@ class Printer(FormulaWriter[B]):
         is_short = isinstance(written, Quotient) and not any(isinstance(part, Sum) for part in children(written))
         return (self.styled(in_exponent=True) if is_short else self).scalar(value)
 
+    def exponent(self, argument: Scalar) -> B:
+        """Return the argument of an exponential: −s/2, whatever polynomials of s look like elsewhere."""
+        return self.typeset(formula_of(argument, ""))
+
     def power_of(self, function: PowerOf) -> B:
         """Return λᵏ, Re (σ + iω)ᵏ, or δ(k, j)."""
         if function.kind == "KroneckerDelta":

@@ -220,7 +220,7 @@ class TextPrinter(Printer[TextBox]):
 
     def exponential(self, argument: Scalar) -> TextBox:
         """exp(-t)."""
-        return self.joined([text_box("exp"), self.grouped(self.scalar(argument))], Level.POWER)
+        return self.joined([text_box("exp"), self.grouped(self.exponent(argument))], Level.POWER)
 
     def root(self, argument: TextBox, degree: int = 2) -> TextBox:
         """Return √3, √(ω² - b²), ⁵√2."""

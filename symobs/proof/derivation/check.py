@@ -11,6 +11,7 @@ from dataclasses import field, replace
 from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, product_of
+from symobs.exact.core.generators import stands_inside
 from symobs.formula.phrases import ASSERTS, NAMING
 from symobs.formula.phrases.languages import SPOKEN
 from symobs.formula.tree import (
@@ -218,7 +219,7 @@ def _tabulated(step: Tabulate, environment: Environment, discrete: bool) -> Envi
     value = as_scalar(evaluate(polynomial, environment, Exact(environment)))
     from symobs.proof.derivation.routh_check import is_tabulated, last_determinant  # noqa: PLC0415 - only pages of regions pay for it
 
-    if not is_tabulated(step, value, environment):
+    if stands_inside(environment.variable, value) or not is_tabulated(step, value, environment):
         reject(f"that this is the table of {plain(polynomial, environment.variable)} in {variable}")
     if step.sentence is not None and "polynomial" in dict(step.sentence.slots):
         _fact(Relation((formula_in(step.sentence, "polynomial"), polynomial), ("=",)), environment, discrete)
@@ -304,6 +305,12 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
     if isinstance(fact, HoldsExactlyWhere):
         _about_letters(fact.property.subject, environment)
         found = evaluate(fact.property.subject, environment, Exact(environment))
+        if stands_inside(environment.variable, found):
+            from symobs.proof.derivation.region_check import delayed_intervals  # noqa: PLC0415 - only pages of regions pay for it
+
+            if fact.property.name != "stable" or delayed_intervals(found, environment) != (fact.where,):
+                reject(f"that {found} is {fact.property.name} exactly there")
+            return
         values: Scalar | tuple[Scalar, ...] = subjects(fact.property.name, found, environment.variable)
         if fact.property.name != "positive_definite" and isinstance(values, tuple):
             (value,) = values

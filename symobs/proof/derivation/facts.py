@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, apart_from_zero, from_coefficients, remainder
 from symobs.exact.algebraic.polynomial_roots import polynomial_of_roots
-from symobs.exact.core.generators import all_roots, function_named, identities, substitute, symbols_named
+from symobs.exact.core.generators import all_roots, function_named, identities, stands_inside, substitute, symbols_named
 from symobs.formula.tree import Conjunction, Environment, Exact, Relation, evaluate
 from symobs.formula.tree.plain_text import plain_relation
 from symobs.ground.errors import DerivationRejected, WrongKind
@@ -121,7 +121,10 @@ def subjects(name: str, value: Any, variable: str) -> tuple[Scalar, ...]:
     if name == "positive_definite":
         return leading_minors(value)
     if not isinstance(value, Matrix) or value.shape == (1, 1):
-        return (as_scalar(value),)
+        only = as_scalar(value)
+        if stands_inside(variable, only):
+            reject(f"that the function {only} is {name}")
+        return (only,)
     if name == "strictly_proper":
         return value.entries
     denominator = value.common_denominator()

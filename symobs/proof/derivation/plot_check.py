@@ -9,14 +9,14 @@ from cmath import exp, phase
 from fractions import Fraction
 from functools import lru_cache
 from itertools import chain, dropwhile, islice, pairwise
-from math import comb, degrees, lcm, log10, tau
-from operator import mul
+from math import comb, degrees, hypot, lcm, log10, tau
+from operator import itemgetter, mul
 from typing import TYPE_CHECKING, NamedTuple
 
 from symobs.exact import EIGENVALUE, Matrix, Scalar, product_of
 from symobs.exact.algebraic.enclosure import near as enclosed
 from symobs.exact.algebraic.enclosure import sign_of_number
-from symobs.exact.algebraic.root_location import shifted, value_at
+from symobs.exact.algebraic.root_location import complex_roots, shifted, value_at
 from symobs.exact.core.generators import derivative
 from symobs.exact.core.matrix import whole_product
 from symobs.formula.figures import (
@@ -279,6 +279,8 @@ def faults_of_frequency(
         jumps = [abs(b - a) for a, b in pairwise(picture.phases)]
         if list(picture.across) != sorted(picture.across) or max(jumps, default=0) > 200:
             yield "a phase that does not jump"
+        if not _are_asymptotes(picture.asymptotes, above, below, float(near)):
+            yield "the asymptotes of the modulus"
         return
     for (u, v), (n, p) in zip(picture.values, pairs, strict=True):
         missed = _square((n[0] - u * p[0] + v * p[1], n[1] - u * p[1] - v * p[0]))
@@ -286,6 +288,20 @@ def faults_of_frequency(
             yield f"the value {written((u, v))}"
     if not within((Fraction(-1), Fraction(0)), picture.window):
         yield "-1 in the window"
+
+
+def _are_asymptotes(points: Sequence[Place], above: Sequence[Fraction], below: Sequence[Fraction], near: float) -> bool:
+    """Return whether each factor s − p of the loop counts as the larger of ω and |p| at the points and between them."""
+    sizes = [[hypot(*map(float, root)) for root in complex_roots(each)] for each in (above, below)]
+    lead = log10(abs(above[0] / below[0]))
+
+    def off(x: float, y: float) -> float:
+        first, second = (sum(log10(max(10**x, size)) for size in each) for each in sizes)
+        return abs(20 * (lead + first - second) - y)
+
+    places = [(float(x), float(y)) for x, y in points]
+    between = [((a + b) / 2, (c + d) / 2) for (a, c), (b, d) in pairwise(places)]
+    return places == sorted(places, key=itemgetter(0)) and all(off(*place) <= near for place in (*places, *between))
 
 
 def _lagging(value: Place, place: Place, delay: Fraction) -> Place:

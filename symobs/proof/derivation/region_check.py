@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from symobs.exact import Scalar
 from symobs.exact.algebraic.real_algebraic import real_roots, roots_of_scalar
+from symobs.exact.core.generators import function_named, stands_inside
 from symobs.formula.phrases.languages import Counted
-from symobs.formula.tree import Conjunction, Literal, Relation, SymbolList
+from symobs.formula.tree import Conjunction, Decimals, Literal, Relation, SymbolList
 from symobs.proof.derivation.steps import Sentence
 from symobs.stability.criteria.critical_polynomials import CriticalPolynomials, StabilityBoundary, irreducible
 from symobs.stability.criteria.stability_conditions import is_stable_where, stable_where
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from symobs.exact import RealNumber
+    from symobs.exact.algebraic.dead_time import Edge
     from symobs.formula.tree import Environment, Formula
     from symobs.proof.derivation.steps import RegionSummary
     from symobs.stability.regions.region import PlaneRegion
@@ -31,6 +34,8 @@ MOST_ZEROS = 5
 
 def is_survey(step: RegionSummary, value: Scalar, environment: Environment, *, discrete: bool) -> bool:
     """Return whether the statement of a step about a region is true."""
+    if stands_inside(environment.variable, value):
+        return not step.findings and step.parts == delayed_intervals(value, environment)
     region = region_of(value, environment, discrete=discrete, names=step.names)
     if region is None and not step.parts:
         found = findings_of_conditions(value, environment, step.names, discrete=discrete)
@@ -200,6 +205,33 @@ def are_the_parts(region: PlaneRegion, said: tuple[tuple[Relation, ...], ...]) -
         and are_whole(region, found)
         and said == tuple(relations_of(part, region.names) for part in found)
     )
+
+
+def delayed_intervals(value: Scalar, environment: Environment) -> tuple[tuple[Relation, ...], ...]:
+    """Return low < k < high for every interval of k with stable roots of P + k N e^{−sT}, none for another function.
+
+    An end without a closed form is rounded to six digits after the point.
+    """
+    s, lags = environment.variable, [name for name in value.names if function_named(name) is not None]
+    if len(lags) != 1 or value.degree(lags[0]) != 1 or not value.denominator.is_constant:
+        return ()
+    moved, opened = value.coefficients(lags[0])
+    (lag,), names = map(function_named, lags), moved.names - {s}
+    if lag is None or lag.kind != "exp" or len(names) != 1 or not opened.names <= {s}:
+        return ()
+    from symobs.exact.algebraic.dead_time_margins import digits_of, exact_value, loop_with  # noqa: PLC0415 - dead times alone
+
+    (k,) = names
+    N, T = moved / Scalar.symbol(k), -lag.argument / Scalar.symbol(s)
+    if k in N.names or not T.is_constant or T.fraction() <= 0 or opened.degree(s) <= N.degree(s):
+        return ()
+
+    def end(edge: Edge) -> Formula:
+        value = exact_value(edge)
+        return Decimals(Scalar.of(Fraction(digits_of(edge)))) if isinstance(value, str) else Literal(value)
+
+    found = loop_with(opened, N, T).loop.intervals(environment.signs.get(k, "real"))
+    return tuple((Relation((end(low), Literal(Scalar.symbol(k)), end(high)), ("<", "<")),) for low, high, _ in found)
 
 
 def interval_relations(region: LineRegion) -> list[tuple[Relation, ...]]:

@@ -22,6 +22,7 @@ from symobs.formula.tree import (
 from symobs.pages.printers.latex_to_mathml import elements_of
 from symobs.pages.printers.mathml import MathmlPrinter
 from tests.kit import tabled
+from tests.support.sampling import tried
 from tests.unit.pages.test_printers import (
     MATRICES,
     MATRIX_NAMES,
@@ -163,7 +164,7 @@ def faults(source: str) -> Iterator[str]:
 
 
 @given(sources)
-@settings(max_examples=100)
+@settings(max_examples=tried(100))
 def test_scalars_read_back_as_the_same_number(source: random.Random) -> None:
     value = rational(source, 6)
     expected = value.substitute(POINT)
@@ -172,7 +173,7 @@ def test_scalars_read_back_as_the_same_number(source: random.Random) -> None:
 
 
 @given(sources)
-@settings(max_examples=100)
+@settings(max_examples=tried(100))
 def test_formulas_read_back_as_the_same_value(source: random.Random) -> None:
     formula = source.choice((matrix_formula, scalar_formula))(source, source.randint(0, 3))
     expected = at_point(value_of(formula))
@@ -189,7 +190,7 @@ def right_side(display: str) -> list[ET.Element]:
 
 
 @given(sources)
-@settings(max_examples=20)
+@settings(max_examples=tried(20))
 def test_broken_displays_read_back_as_the_same_number(source: random.Random) -> None:
     names = (*PARAMETERS, "s")
     above, below = polynomial(source, 90, names, 5), polynomial(source, source.choice((1, 3, 6)), names)

@@ -35,6 +35,7 @@ from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.pages.printers.mathml import MathmlPrinter
 from symobs.pages.printers.text_printer import TextPrinter, text_width
 from tests.kit import tabled
+from tests.support.sampling import tried
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -431,7 +432,7 @@ sources = st.integers(0, 2**64).map(random.Random)
 
 
 @given(sources)
-@settings(max_examples=300)
+@settings(max_examples=tried(300))
 def test_printed_scalars_read_back_as_the_same_number(source: random.Random) -> None:
     value = rational(source, 6)
     expected = value.substitute(POINT)
@@ -441,7 +442,7 @@ def test_printed_scalars_read_back_as_the_same_number(source: random.Random) -> 
 
 
 @given(sources)
-@settings(max_examples=300)
+@settings(max_examples=tried(300))
 def test_printed_formulas_read_back_as_the_same_value(source: random.Random) -> None:
     formula = source.choice((matrix_formula, scalar_formula))(source, source.randint(0, 3))
     expected = at_point(value_of(formula))
@@ -451,7 +452,7 @@ def test_printed_formulas_read_back_as_the_same_value(source: random.Random) -> 
 
 
 @given(sources)
-@settings(max_examples=60)
+@settings(max_examples=tried(60))
 def test_broken_displays_read_back_as_the_same_number(source: random.Random) -> None:
     names = (*PARAMETERS, "s")
     above, below = polynomial(source, 90, names, 5), polynomial(source, source.choice((1, 3, 6)), names)
@@ -462,7 +463,7 @@ def test_broken_displays_read_back_as_the_same_number(source: random.Random) -> 
 
 
 @given(sources)
-@settings(max_examples=60)
+@settings(max_examples=tried(60))
 def test_what_a_matrix_leaves_out_is_told_below(source: random.Random) -> None:
     value = Matrix.of(
         [[polynomial(source, 30, degree=5), 1], [polynomial(source, 3), polynomial(source, 25, degree=5)]]
@@ -471,7 +472,7 @@ def test_what_a_matrix_leaves_out_is_told_below(source: random.Random) -> None:
 
 
 @given(sources)
-@settings(max_examples=40)
+@settings(max_examples=tried(40))
 def test_broken_text_reads_back_as_the_same_number(source: random.Random) -> None:
     value = polynomial(source, 60, (*PARAMETERS, "s"), 5) / polynomial(source, 1)
     display = TextPrinter(width=80).display([equation(A, lit(value))])

@@ -28,6 +28,7 @@ from tests.support.algebra import (
     seeded,
     value_at,
 )
+from tests.support.sampling import tried
 from tests.unit.stability.test_region_proofs import positive_at
 
 if TYPE_CHECKING:
@@ -146,7 +147,7 @@ declared = st.fixed_dictionaries({"a": st.sampled_from(["positive", "nonzero", "
 
 @pytest.mark.slow
 @given(st.lists(entries, min_size=1, max_size=4), declared, st.booleans(), st.integers(0, 10**6))
-@settings(max_examples=60)
+@settings(max_examples=tried(60))
 def test_the_simplified_list_the_raw_lists_and_the_roots_agree(
     tail: list[Scalar],
     signs: dict[str, str],

@@ -25,6 +25,7 @@ from symobs.stability.inequalities.z3_backend import QUESTION, Resources, point_
 from tests.kit import scalar, scalars, tabled, tables
 from tests.support.algebra import has_sign, random_fraction, seeded, value_at
 from tests.support.paths import ROOT
+from tests.support.sampling import tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -94,7 +95,7 @@ linear = st.builds(lambda p, q, r, t: p * x + q * y + r * a + t, *[st.integers(-
 @given(
     st.lists(linear | st.builds(lambda u, v: u * v, linear, linear), min_size=1, max_size=3), linear | st.just(x * y)
 )
-@settings(max_examples=80)
+@settings(max_examples=tried(80))
 def test_whatever_is_proved_is_true(known: list[Scalar], goal: Scalar) -> None:
     steps = prove(goal, known, AB)
     if steps is not None:

@@ -30,6 +30,7 @@ from symobs.stability.criteria.routh_table import (
 from tests.kit import scalars, tabled, tables
 from tests.support.algebra import value_at
 from tests.support.problems.steps import checked, literal, refused, said
+from tests.support.sampling import tried
 from tests.support.second_reader import changes, expression, located, rows_of
 from tests.support.tampering.mutations import changes as changes_of
 from tests.support.tampering.mutations import lines_of
@@ -115,7 +116,7 @@ def with_symmetric_roots(draw: st.DrawFn) -> list[int]:
 @given(integers | positive | with_symmetric_roots())
 @example([1, 1, 2, 2, 3])
 @example([1, 0, 3, 0, 3, 0, 1])
-@settings(max_examples=120)
+@settings(max_examples=tried(120))
 def test_every_row_and_every_count_is_found_again(coefficients: list[int]) -> None:
     table = routh_table(whole(coefficients))
     expected = rows_of([sympy.Integer(c) for c in coefficients], sympy.Symbol("epsilon"))

@@ -28,6 +28,7 @@ PHRASES: dict[str, str] = {
     "picture_branches": "Equilibria {state} over {parameter}: full where the linearisation is asymptotically stable, dashed where it is not.",
     "picture_branch_points": "Rings: branch points, at {values}.",
     "picture_bode": "Modulus of the loop in decibels and phase in degrees over the frequency.",
+    "picture_bode_asymptotes": "Dashed: the asymptotes of the modulus, which bend at the moduli of the poles and zeros.",
     "picture_bode_margins": "Bars: the margins, up to 0 dB and up to −180° or a whole turn beside it.",
     "picture_bode_discrete": "Modulus of the loop in decibels and phase in degrees over the angle on the unit circle.",
     "picture_sweep": "Checked values at {count} points, joined by straight lines.",

@@ -46,6 +46,7 @@ from symobs.tasks.analysis.strata.rank_stratification import (
 )
 from symobs.tasks.analysis.strata.strata import (
     Piece,
+    RankAnswer,
     RankStratum,
     answer_on,
     answer_with,
@@ -161,7 +162,7 @@ def power_rows(A: Matrix, C: Matrix) -> Matrix:
     return Matrix.block([[row] for row in rows]).normal()
 
 
-def rank_answer(A: Matrix, C: Matrix, ideal: Ideal | None = None) -> dict[str, Any]:
+def rank_answer(A: Matrix, C: Matrix, ideal: Ideal | None = None) -> RankAnswer:
     """Return the observability test of a pair (on a stratum): matrix, rank r, kernel basis N, and the witnesses.
 
     Witnesses: rows and columns of an r×r minor, rows of a minor of N, and X with A N = N X.
@@ -181,7 +182,7 @@ def rank_answer(A: Matrix, C: Matrix, ideal: Ideal | None = None) -> dict[str, A
     return answer_with(O, len(columns), with_restriction(N, A), (rows, columns))
 
 
-def rank_environment(plant: StateSpace, pair: tuple[Matrix, Matrix], found: Mapping[str, Any]) -> Environment:
+def rank_environment(plant: StateSpace, pair: tuple[Matrix, Matrix], found: RankAnswer) -> Environment:
     """Return the environment of the claims about a test of observability."""
     (A, C), O = pair, found["matrix"]
     above = O.select(range(O.shape[0] - C.shape[0]), range(O.shape[1]))
@@ -190,7 +191,7 @@ def rank_environment(plant: StateSpace, pair: tuple[Matrix, Matrix], found: Mapp
     return Environment(variable=plant.variable, values=values, signs=plant.symbols.signs)
 
 
-def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | None = None) -> Iterator[Claim]:
+def rank_claims(found: RankAnswer, e: Environment, here: Environment | None = None) -> Iterator[Claim]:
     """Yield structure, kernel and rank from above, invariance; the kernel's claims hold `here`, on a stratum."""
     O, N, X = found["matrix"], found["kernel"], found["restricted"]
     order = O.shape[1]
@@ -206,13 +207,13 @@ def rank_claims(found: Mapping[str, Any], e: Environment, here: Environment | No
         yield holds(e, "A N = N X")
 
 
-def rank_losses(found: Mapping[str, Any], signs: Mapping[str, str]) -> tuple[Scalar, ...]:
+def rank_losses(found: RankAnswer, signs: Mapping[str, str]) -> tuple[Scalar, ...]:
     """Return the factors of a minor of the order of the rank that the signs do not keep from 0."""
     minor = found["matrix"].select(found["rows"], found["columns"])
     return vanishing_factors([minor.determinant()], signs) if minor.shape[0] else ()
 
 
-def minor_claim(found: Mapping[str, Any], e: Environment) -> Iterator[Claim]:
+def minor_claim(found: RankAnswer, e: Environment) -> Iterator[Claim]:
     """Yield the rank from below, in general: a minor of its order is not zero."""
     if found["rank"]:
         minor = found["matrix"].select(found["rows"], found["columns"])
@@ -226,6 +227,7 @@ class RankResult(Result):
     Claims: the blocks of M follow each other by A; M N = 0; an r×r minor of M and a minor of N are not zero; A N = N X.
     """
 
+    answer: RankAnswer
     piece: Piece | None = None
 
     leads = ("matrix",)
@@ -275,14 +277,14 @@ class RankResult(Result):
     @cached_property
     def test_determinant(self) -> Scalar | None:
         """The determinant of a square test matrix; None where it is not square, or too long to be written down."""
-        matrix: Matrix = self.answer["matrix"]
+        matrix = self.answer["matrix"]
         square = matrix.shape[0] == matrix.shape[1]
         return self.plant.simplified(matrix.determinant()) if square and not self.is_too_long else None
 
     @cached_property
     def deciding_determinant(self) -> Scalar | None:
         """That determinant; of a matrix in which all but n rows are multiples of those above them, that of these rows."""
-        matrix: Matrix = self.answer["matrix"]
+        matrix = self.answer["matrix"]
         order = matrix.shape[1]
         if matrix.shape[0] == order or self.is_too_long:
             return self.test_determinant
@@ -356,7 +358,7 @@ class RankResult(Result):
     @cached_property
     def _tree(self) -> Tree | None:
         """The strata of the rank; None where there are no parameters, or more than can be dealt with."""
-        matrix: Matrix = self.answer["matrix"]
+        matrix = self.answer["matrix"]
         if self.piece is not None or self.is_too_long or not matrix.names:
             return None
         answer, (A, _) = self.answer, self.pair(self.plant)
@@ -441,7 +443,7 @@ class RankResult(Result):
     @cached_property
     def modes(self) -> tuple[Root, ...]:
         """The eigenvalues of A on the kernel."""
-        restricted: Matrix = self.answer["restricted"]
+        restricted = self.answer["restricted"]
         if not restricted.shape[0]:
             return ()
         return roots_of(restricted.characteristic_polynomial(self.plant.variable), self.plant.variable)
@@ -454,7 +456,7 @@ class RankResult(Result):
     @property
     def kernel_vectors(self) -> tuple[Matrix, ...]:
         """The basis of the kernel, vector by vector."""
-        N: Matrix = self.answer["kernel"]
+        N = self.answer["kernel"]
         return tuple(N.select(range(N.shape[0]), [j]) for j in range(N.shape[1]))
 
 

@@ -20,10 +20,15 @@ from symobs.exact.algebraic.dead_time_margins import (
     loop_with,
     told_of_dead_time,
 )
-from symobs.formula.tree import Decimals, Environment, SymbolList
+from symobs.exact.core.generators import function
+from symobs.formula.tree import Decimals, Environment, HoldsExactlyWhere, SymbolList
 from symobs.ground.dataclass import dataclass
 from symobs.ground.errors import InputError
 from symobs.proof.certificate.claims import Statement
+from symobs.proof.derivation import Inequalities, RegionSummary
+from symobs.proof.derivation.builder import predicate, sentence
+from symobs.proof.derivation.region_check import delayed_intervals
+from symobs.stability.frequency_plots import nyquist_picture
 from symobs.system.specification import read_names
 from symobs.system.transfer_function_text import read_transfer_function
 from symobs.tasks.analysis.page_parts import factored_form, given
@@ -225,17 +230,33 @@ def write_delayed_region(page: Builder, result: DelayedRegion) -> None:
     given(page)
     with page.section("stability_region"):
         write_delayed_loop(page, result)
-        gain = SymbolList((result.gain,))
         page.remark("dead_time_moves")
         tell(page, result, "crossing")
         tell(page, result, "bound")
-        found = len(result.intervals)
-        if not found:
-            page.remark("dead_time_never", gain=gain)
+        if not result.intervals:
+            page.remark("dead_time_never", gain=SymbolList((result.gain,)))
         else:
-            tell(page, result, "one" if found == 1 else "intervals")
-            if found > 1:
-                page.remark("dead_time_number", number=str(found), gain=gain)
+            _region(page)
+        _picture(page, result)
+
+
+def _region(page: Builder) -> None:
+    """Write the intervals, of a single one its ends."""
+    chi, parts = page["chi_cl"], delayed_intervals(page["chi_cl"].scalar, page.environment)
+    ends = [part.members[place] for (part,) in parts for place in (0, 2)]
+    say = sentence("dead_time_rounded" if any(isinstance(end, Decimals) for end in ends) else "region_is", {})
+    if len(parts) == 1:
+        page.steps.append(Inequalities(HoldsExactlyWhere(predicate("stable", chi), parts[0]), say, answer=True))
+    else:
+        page.steps.append(RegionSummary(chi.formula, (), (), parts, say))
+
+
+def _picture(page: Builder, result: DelayedRegion) -> None:
+    """Draw the Nyquist picture of the loop for k = 1."""
+    loop, gain = result.answer["N"] / result.answer["P"], SymbolList((result.gain,))
+    crossed = [float(told["value"]) for told in result.told("axis")]
+    picture = nyquist_picture(loop.numerator, loop.denominator, page.plant.variable, crossed, result.delay.fraction())
+    page.plot(picture, page("q / chi_o"), say="dead_time_response", gain=gain)
 
 
 def write_delayed_loop(page: Builder, result: DelayedLoopResult) -> None:
@@ -252,10 +273,11 @@ def write_delayed_loop(page: Builder, result: DelayedLoopResult) -> None:
     page.define(
         "q", loop if k is None else loop / k, page.value(result.answer["N"]), say="dead_time_numerator", closing=False
     )
-    page.remark(
-        "dead_time_poles" if k is None else "dead_time_poles_gain",
-        **({} if k is None else {"gain": SymbolList((result.gain,))}),
-    )
+    lag = function("exp", -result.delay * Scalar.symbol(page.plant.variable))
+    lagging = page["q"] * page.value(lag)
+    closed = page["chi_o"] + (lagging if k is None else k * lagging)
+    page.define("chi_cl", closed, page.value(closed.scalar), say="dead_time_closed", closing=False)
+    page.remark("dead_time_poles")
 
 
 def tell(page: Builder, result: DelayedLoopResult, kind: str) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeAlias, TypedDict
 
 from symobs.exact import (
     EIGENVALUE,
@@ -132,7 +132,19 @@ def _solvable_for_a_letter(equations: list[Scalar], node: Node, region: Region) 
     return None
 
 
-def answer_on(matrix: Matrix, A: Matrix, stratum: RankStratum, values: Mapping[str, Scalar]) -> dict[str, object]:
+class RankAnswer(TypedDict):
+    """The test matrix, its rank r, a basis N of its kernel, X with A N = N X, an r×r minor, and rows of a minor of N."""
+
+    matrix: Matrix
+    rank: int
+    kernel: Matrix
+    restricted: Matrix
+    rows: tuple[int, ...]
+    columns: tuple[int, ...]
+    free: tuple[int, ...]
+
+
+def answer_on(matrix: Matrix, A: Matrix, stratum: RankStratum, values: Mapping[str, Scalar]) -> RankAnswer:
     """Return the answer of a rank test on a stratum, the parameters in `values` put in."""
     node, kernel = stratum.node, stratum.node.kernel
     assert kernel is not None  # noqa: S101 - nodes of a tree have kernels
@@ -146,7 +158,7 @@ def answer_on(matrix: Matrix, A: Matrix, stratum: RankStratum, values: Mapping[s
     return answer_with(matrix.substitute(values).normal() if values else matrix, node.rank, kernel, node.minors[0])
 
 
-def answer_with(matrix: Matrix, rank: int, kernel: Kernel, minor: Minor) -> dict[str, object]:
+def answer_with(matrix: Matrix, rank: int, kernel: Kernel, minor: Minor) -> RankAnswer:
     """Return an answer of a rank test."""
     return {
         "matrix": matrix,

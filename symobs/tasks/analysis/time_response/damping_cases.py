@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, NotRequired, Self, TypedDict
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.algebraic.root_sum import RootSum
@@ -47,9 +47,19 @@ _BRANCHES = {"<": "branch_under", ">": "branch_over"}
 _EXCLUDES = {"negative": {"positive", "nonnegative", "zero"}, "positive": {"negative", "nonpositive", "zero"}}
 
 
+class DampingAnswer(TypedDict):
+    """The signs of discriminants that an answer stands on; where there is no closed form what is open, and a factor."""
+
+    taken: Signs
+    chosen: Signs
+    question: NotRequired[str]
+    factor: NotRequired[Scalar | None]
+
+
 class DampingCases(Result):
     """A result whose answer holds `taken` and `chosen`, the signs of discriminants it stands on."""
 
+    answer: DampingAnswer
     in_time: ClassVar[bool] = True
     #: The answer that every result has, unless it is undecided or negative.
     main: ClassVar[str] = "matrix"
@@ -62,8 +72,8 @@ class DampingCases(Result):
         return tuple(v for v in self.answer.values() if isinstance(v, (Matrix, Scalar)))
 
     @classmethod
-    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant, what is asked beside it, and the signs of discriminants."""
+    def of(cls, *data: Any, **named: Any) -> Self:
+        """Return the result for a plant, a method, what is asked beside the plant, and the signs of discriminants."""
         raise NotImplementedError
 
     def claims(self) -> Iterator[Claim]:
@@ -86,11 +96,17 @@ class DampingCases(Result):
         """Polynomials in the parameters beyond the denominators whose zeros are cases."""
         return ()
 
+    @property
+    def end(self) -> Scalar | None:
+        """The horizon where there is a finite one."""
+        horizon = self.answer.get("horizon")
+        return horizon if isinstance(horizon, Scalar) else None
+
     @cached_property
     def domain(self) -> tuple[Condition, ...]:
         """That of the plant; and a horizon is positive, where no sign says so."""
-        end = self.answer.get("horizon")
-        if not isinstance(end, Scalar) or sign_of(end, self.plant.symbols.signs) == "positive":
+        end = self.end
+        if end is None or sign_of(end, self.plant.symbols.signs) == "positive":
             return super().domain
         return (*super().domain, Condition("domain", end, ">"))
 
@@ -144,11 +160,11 @@ class DampingCases(Result):
         """Return the result on a stratum; ZeroDivisionError where the signs this one stands on exclude it."""
         taken: Signs = {}
         for delta, sign in self.answer["taken"].items():
-            moved = delta.substitute(substitution)
-            if _sign_in(plant, moved) in _EXCLUDES[sign]:
-                message = f"{moved} is not {sign}"
+            there = delta.substitute(substitution)
+            if _sign_in(plant, there) in _EXCLUDES[sign]:
+                message = f"{there} is not {sign}"
                 raise ZeroDivisionError(message)
-            taken[moved] = sign
+            taken[there] = sign
         values = ((name, self.answer.get(name)) for name in self.asked_for)
         moved = {name: substitute(v, substitution) for name, v in values if isinstance(v, (Matrix, Scalar))}
         return self._rebuilt(plant, {**self.answer, **moved}, taken)

@@ -6,7 +6,7 @@ The controllability Gramian is that of (Bᵀ, Aᵀ).  In discrete time W is the 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NotRequired, Self, TypedDict
 
 from symobs.exact import Matrix, Scalar, modulo, product_of
 from symobs.exact.core.generators import function_named, substitute
@@ -43,6 +43,7 @@ from symobs.tasks.analysis.rank.rank_test import (
 )
 from symobs.tasks.analysis.strata.strata import distances, systems_of
 from symobs.tasks.analysis.time_response.damping_cases import (
+    DampingAnswer,
     DampingCases,
     Signs,
     exponential_claims,
@@ -76,6 +77,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_question,
 )
 from symobs.tasks.result import Case, Result, choose, holds, method, page_of, task
+from symobs.tasks.result.answers import those_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -84,6 +86,7 @@ if TYPE_CHECKING:
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Horizon, Name
+    from symobs.tasks.analysis.strata.strata import RankAnswer
 
 
 KINDS_OF = ("observability", "controllability")
@@ -99,22 +102,42 @@ def pair_of(plant: StateSpace, of: str) -> tuple[Matrix, Matrix]:
     return (m.A, m.C) if of == "observability" else (m.A.T, m.B.T)
 
 
-def _pair_seen(A: Matrix, C: Matrix, plant: StateSpace, horizon: Any) -> tuple[Matrix, Matrix]:
+def _pair_seen(A: Matrix, C: Matrix, plant: StateSpace, end: Scalar | None) -> tuple[Matrix, Matrix]:
     """Return the pair whose observability matrix has the kernel of W.
 
     It is (A, C), since the rank of [C; CA; …] has stopped growing after n rows; over fewer steps than states it is
     (0, [C; CA; …]) with as many rows as steps.
     """
-    if not plant.is_discrete or horizon == INFINITE or horizon.fraction() >= plant.order:
+    if not plant.is_discrete or end is None or end.fraction() >= plant.order:
         return A, C
     rows = power_rows(A, C)
-    return A * 0, rows.select(range(int(horizon.fraction()) * C.shape[0]), range(plant.order))
+    return A * 0, rows.select(range(int(end.fraction()) * C.shape[0]), range(plant.order))
+
+
+class GramianAsked(TypedDict):
+    """What is observed or controlled, and the horizon, `inf` for all time."""
+
+    of: str
+    horizon: Scalar | str
+
+
+class GramianAnswer(GramianAsked, DampingAnswer):
+    """W, also as a function of t, e^{At} (its transpose for controllability), and the polynomial of what is seen."""
+
+    rank: RankAnswer
+    finite_sum: Matrix
+    matrix: Matrix | None
+    determinant: Scalar | None
+    function: NotRequired[Matrix]
+    exponential: NotRequired[Matrix]
+    seen: NotRequired[Scalar]
 
 
 @dataclass
 class Gramian(DampingCases):
     """W with W = ∫ of its integrand (checked by differentiation), its determinant, Σ (Aᵀ)ᵏ Cᵀ C Aᵏ, and the kernel."""
 
+    answer: GramianAnswer
     task: ClassVar[str] = "gramian"
     answered_by = ("matrix",)
     only_value = ("matrix", "determinant")
@@ -123,42 +146,52 @@ class Gramian(DampingCases):
     asked_for: ClassVar[tuple[str, ...]] = ("horizon",)
 
     @classmethod
-    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant; `asked` holds `of` and `horizon`."""
+    def of(cls, plant: StateSpace, method_name: str, asked: GramianAsked, taken: Signs) -> Self:
+        """Return the result for a plant."""
         A, C = pair_of(plant, asked["of"])
-        found = rank_answer(*_pair_seen(A, C, plant, asked["horizon"]), plant.ideal)
+        end = _instant(asked["horizon"])
+        found = rank_answer(*_pair_seen(A, C, plant, end), plant.ideal)
         O = modulo(power_rows(A, C), plant.ideal)
-        shared = {"of": asked["of"], "horizon": asked["horizon"], "taken": taken, "chosen": {}, "rank": found}
-        shared |= {"finite_sum": (O.T @ O).normal()}
-        if asked["horizon"] == INFINITE:
+        shared: GramianAnswer = {
+            "of": asked["of"],
+            "horizon": asked["horizon"],
+            "taken": taken,
+            "chosen": {},
+            "rank": found,
+            "finite_sum": (O.T @ O).normal(),
+            "matrix": None,
+            "determinant": None,
+        }
+        if end is None:
             return cls(plant, method_name, {**shared, **infinite_gramian(plant, A, C, found)})
         if plant.is_discrete:
-            return cls(plant, method_name, {**shared, **steps_gramian(A, C, asked["horizon"])})
+            W = steps_gramian(A, C, end)
+            return cls(plant, method_name, {**shared, "matrix": W, "determinant": W.determinant()})
         try:
             exponential, chosen = closed_form(plant, taken, sums=has_sums(plant))
-            W = None if exponential.is_closed else _with_sums(plant, A, C)
+            W_t = None if exponential.is_closed else _with_sums(plant, A, C)
         except NoClosedForm as error:
-            open_answer = {"matrix": None, "determinant": None, "question": question_of(error), "factor": error.factor}
-            return cls(plant, method_name, {**shared, **open_answer})
-        if W is not None:
-            there = {"matrix": substitute(W, {"t": asked["horizon"]}), "determinant": None, "function": W}
-            return cls(plant, method_name, {**shared, **there, "chosen": chosen})
+            return cls(plant, method_name, {**shared, "question": question_of(error), "factor": error.factor})
+        shared["chosen"] = chosen
+        if W_t is not None:
+            return cls(plant, method_name, {**shared, "matrix": substitute(W_t, {"t": end}), "function": W_t})
         table = exponential.table() if asked["of"] == "observability" else transposed(exponential.table())
         seen = product(table_of(C), table)
         integrals = integral(product(transposed(seen), seen))
-        answer = {
-            "matrix": matrix_at(integrals, asked["horizon"]),
-            "determinant": _determinant(integrals, asked["horizon"]),
+        answer: GramianAnswer = {
+            **shared,
+            "matrix": matrix_at(integrals, end),
+            "determinant": _determinant(integrals, end),
             "function": matrix_at(integrals, TIME),
             "exponential": matrix_at(table, TIME),
         }
-        return cls(plant, method_name, {**shared, **answer, "chosen": chosen})
+        return cls(plant, method_name, answer)
 
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time, at the horizon too."""
-        names = ("matrix", "determinant", "function", "exponential")
-        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+        answer = self.answer
+        return those_found(answer["matrix"], answer["determinant"], answer.get("function"), answer.get("exponential"))
 
     @property
     def verdict(self) -> str:
@@ -170,7 +203,7 @@ class Gramian(DampingCases):
     @property
     def is_over_steps(self) -> bool:
         """Whether W is a sum over a number of steps, which its own determinant and kernel describe."""
-        return self.plant.is_discrete and self.answer["horizon"] != INFINITE
+        return self.plant.is_discrete and self.end is not None
 
     @property
     def has_answer(self) -> bool:
@@ -217,7 +250,7 @@ class Gramian(DampingCases):
         yield from super().claims()
         A, C = pair_of(self.plant, self.answer["of"])
         found, W = self.answer["rank"], self.answer["matrix"]
-        pair = _pair_seen(A, C, self.plant, self.answer["horizon"])
+        pair = _pair_seen(A, C, self.plant, self.end)
         e = rank_environment(self.plant, pair, found)
         yield from rank_claims(found, e)
         yield from minor_claim(found, e)
@@ -228,11 +261,11 @@ class Gramian(DampingCases):
         for k in range(1, self.plant.order):
             total = total + (a.T) ** k @ c.T @ c @ a**k
         yield holds(plain, "M = {total}", total=total)
-        kernel: Matrix = found["kernel"]
+        kernel = found["kernel"]
         if kernel.shape[1] and pair == (A, C):
             zero = Matrix.zeros(*kernel.shape)
             yield Claim(relation(m @ Term(Literal(kernel), plain), zero), plain)
-        if self.answer["horizon"] == INFINITE:
+        if self.end is None:
             yield from self._about_decay(e)
         if W is None:
             return
@@ -245,7 +278,7 @@ class Gramian(DampingCases):
             values["primitive"] = self.answer["function"]
         if "exponential" in self.answer:
             values["exp_At"] = self.answer["exponential"]
-        e = time_environment(self.plant, values, _instant(self.answer["horizon"]))
+        e = time_environment(self.plant, values, self.end)
         yield from self._about_gramian(e)
 
     def _about_decay(self, e: Environment) -> Iterator[Claim]:
@@ -262,27 +295,27 @@ class Gramian(DampingCases):
 
     def _about_gramian(self, e: Any) -> Iterator[Claim]:
         A, C = letter("A", e), letter("C", e)
-        horizon = self.answer["horizon"]
-        if "exponential" in self.answer:
+        end = self.end
+        if end is None and self.plant.is_discrete:
+            yield holds(e, "A.T W A - W + C.T C = 0")
+        elif end is None:
+            yield holds(e, "A.T W + W A + C.T C = 0")
+        elif "exponential" in self.answer:
             Phi = letter("exp_At", e)
             yield from exponential_claims(e)
             integrand = Phi.T @ C.T @ C @ Phi
             yield from from_zero(["primitive"], e)
-            whole = Term(since_start(integrand.formula, letter("primitive", e).formula, horizon), e)
+            whole = Term(since_start(integrand.formula, letter("primitive", e).formula, end), e)
             yield holds(e, "W = {whole}", whole=whole)
         elif "function" in self.answer:
             moving = letter("primitive", e)
             yield from from_zero(["primitive"], e)
             balance = relation(rate_of(moving), A.T @ moving + moving @ A + C.T @ C)
             yield Claim(balance, e)
-            yield holds(e, "W = {horizon}", "W at the horizon", horizon=moving.at("t", horizon))
-        elif horizon == INFINITE and self.plant.is_discrete:
-            yield holds(e, "A.T W A - W + C.T C = 0")
-        elif horizon == INFINITE:
-            yield holds(e, "A.T W + W A + C.T C = 0")
+            yield holds(e, "W = {horizon}", "W at the horizon", horizon=moving.at("t", end))
         else:
             total = C.T @ C
-            for k in range(1, int(horizon.fraction())):
+            for k in range(1, int(end.fraction())):
                 total = total + (A.T) ** k @ C.T @ C @ A**k
             yield holds(e, "W = {total}", total=total)
         yield holds(e, "W = W.T")
@@ -304,11 +337,11 @@ class Gramian(DampingCases):
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """Matrix, determinant, finite sum, rank and kernel."""
-        kernel: Matrix = self.answer["rank"]["kernel"]
+        kernel = self.answer["rank"]["kernel"]
         vectors = [list(kernel.select(range(kernel.shape[0]), [j]).entries) for j in range(kernel.shape[1])]
         asked = self.answer.get("question")
-        found = {name: self.answer[name] for name in ("matrix", "determinant", "finite_sum")}
-        found |= {"rank": self.answer["rank"]["rank"], "kernel": vectors}
+        found: dict[str, object] = {"matrix": self.answer["matrix"], "determinant": self.answer["determinant"]}
+        found |= {"finite_sum": self.answer["finite_sum"], "rank": self.answer["rank"]["rank"], "kernel": vectors}
         return {**found, **({"question": asked} if asked else {})}
 
 
@@ -325,8 +358,8 @@ def _with_sums(plant: StateSpace, A: Matrix, C: Matrix) -> Matrix:
     return symmetric(found.select(range(count), [0]))
 
 
-def _instant(horizon: Any) -> Scalar | None:
-    """Return the horizon where it is finite and of continuous time."""
+def _instant(horizon: object) -> Scalar | None:
+    """Return the horizon where it is finite."""
     return horizon if isinstance(horizon, Scalar) else None
 
 
@@ -338,7 +371,7 @@ def _determinant(W: Table, horizon: Scalar) -> Scalar | None:
 
 
 @method("gramian/integral", source="kalman1963a")
-def by_integral(plant: StateSpace, of: str, horizon: Any) -> Gramian:
+def by_integral(plant: StateSpace, of: str, horizon: Scalar | str) -> Gramian:
     """Integrate the entries of e^{Aᵀt} Cᵀ C e^{At} as sums of tⁿ e^{αt} cos βt and sin βt; over all time by Lyapunov."""
     return Gramian.of(plant, "integral", {"of": of, "horizon": horizon}, {})
 
@@ -374,8 +407,7 @@ _LYAPUNOV_UP_TO = 3
 @page_of(Gramian)
 def write_gramian(page: Builder, result: Gramian) -> None:
     """Write the whole page."""
-    horizon = result.answer["horizon"]
-    page.in_time(*result.everything(), at=_instant(horizon))
+    page.in_time(*result.everything(), at=result.end)
     result.state_data(page)
     is_dual = result.answer["of"] == "controllability"
     if is_dual:
@@ -428,26 +460,23 @@ def _tell_lyapunov(result: Gramian, page: Builder) -> None:
 
 def _write_branch(page: Builder, result: Gramian) -> None:
     """Write one branch: e^{At}, its output C e^{At}, the integral."""
-    answer = result.answer
+    answer, end, W = result.answer, result.end, result.answer["matrix"]
     A, C = _letters(result, page)
-    if answer.get("question") is not None:
-        if answer["horizon"] == INFINITE:
-            page.remark("gramian_open", question=answer["question"])
-        else:
-            tell_question(page, answer["factor"])
-        return
-    if answer["horizon"] == INFINITE:
+    if end is None:
         _tell_infinite(result, page, A, C)
+        return
+    if W is None:
+        tell_question(page, answer.get("factor"))
         return
     if "function" in answer and "exponential" not in answer:
         moving = page.set("W_t", answer["function"])
         equation = relation(rate_of(moving), _transposed(A) @ moving + moving @ A + _square(C))
         start = page.line("W_t(t = 0) = 0")
-        held = moving.at("t", answer["horizon"])
+        held = moving.at("t", end)
         page.define(
             "W",
             held,
-            answer["matrix"],
+            W,
             say="gramian_by_sums",
             answer=True,
             closing=False,
@@ -457,11 +486,9 @@ def _write_branch(page: Builder, result: Gramian) -> None:
         return
     if "exponential" not in answer:
         total = _square(C)
-        for k in range(1, int(answer["horizon"].fraction())):
+        for k in range(1, int(end.fraction())):
             total = total + _transposed(A) ** k @ _square(C) @ A**k
-        page.define(
-            "W", total, say="gramian_steps", answer=True, steps=Counted("step", int(answer["horizon"].fraction()))
-        )
+        page.define("W", total, say="gramian_steps", answer=True, steps=Counted("step", int(end.fraction())))
         _tell_kernel_over_steps(result, page)
         return
     found, _ = closed_form(result.plant, {**answer["taken"], **answer["chosen"]})
@@ -471,10 +498,9 @@ def _write_branch(page: Builder, result: Gramian) -> None:
     seen = page["exp_At B"] if is_dual else page["C exp_At"]
     page.equal(relation(seen, seen.as_value), say="input_through_exponential" if is_dual else "output_of_exponential")
     integrand = page("{seen} B.T exp_At.T", seen=seen) if is_dual else page("exp_At.T C.T {seen}", seen=seen)
-    whole = page.term(since_start(integrand.formula, Literal(answer["function"]), answer["horizon"]))
-    W: Matrix = answer["matrix"]
+    whole = page.term(since_start(integrand.formula, Literal(answer["function"]), end))
     if page.defines("P_l") and not is_dual and result.plant.admits(page["P_l"].value):
-        page.set("Phi_T", substitute(shown, {"t": answer["horizon"]}))
+        page.set("Phi_T", substitute(shown, {"t": end}))
         page.set("W", W)
         page.equal(page.line("W = {whole} = P_l - Phi_T.T P_l Phi_T", whole=whole), say="gramian_by_lyapunov")
         page.equal(relation(page["W"], W), say="gramian_in_case", answer=True)
@@ -486,13 +512,15 @@ def _write_branch(page: Builder, result: Gramian) -> None:
 
 def _tell_infinite(result: Gramian, page: Builder, A: Term, C: Term) -> None:
     """Write the integral over all time: what decays, Lyapunov's equation, its solution."""
-    answer = result.answer
+    answer, value = result.answer, result.answer["matrix"]
+    if "question" in answer:
+        page.remark("gramian_open", question=answer["question"])
+        return
     seen = define_seen(result, page)
-    if result.decay.verdict == "no":
+    if value is None:
         page.conclude(f"gramian_diverges_{answer['of']}", predicate("unstable", seen))
         return
-    page.set("W", answer["matrix"])
-    W = page["W"]
+    W = page.set("W", value)
     moved = _transposed(A) @ W @ A - W if result.plant.is_discrete else _transposed(A) @ W + W @ A
     equation = relation(moved, -_square(C))
     where = result.decay.positive
@@ -508,8 +536,9 @@ def _tell_infinite(result: Gramian, page: Builder, A: Term, C: Term) -> None:
         page.conclude("lyapunov_with_kernel", nothing, equation=equation, nothing=nothing)
     else:
         page.conclude("lyapunov_alone", equation=equation)
-    page.equal(relation(W, answer["matrix"]), answer=True)
-    page.equal(page.line("det(W) = {determinant}", determinant=answer["determinant"]), say="gramian_determinant")
+    page.equal(relation(W, value), answer=True)
+    if answer["determinant"] is not None:
+        page.equal(page.line("det(W) = {determinant}", determinant=answer["determinant"]), say="gramian_determinant")
 
 
 def define_seen(result: Gramian, page: Builder) -> Term:

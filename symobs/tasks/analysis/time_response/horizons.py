@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, NotRequired, TypedDict
 
 from symobs.exact import Matrix, Scalar, modulo, remainder
 from symobs.exact.core.generators import NotWritten, all_roots, derivative, function, function_named, functions_in
@@ -15,13 +15,14 @@ from symobs.system import read_scalar
 from symobs.system.conditions import Condition, joined, never_zero, nonzero, sign_of
 from symobs.system.specification import read_signal
 from symobs.tasks.analysis.rank.rank_test import minor_claim, rank_claims, rank_environment, rank_losses
-from symobs.tasks.analysis.time_response.damping_cases import DampingCases
+from symobs.tasks.analysis.time_response.damping_cases import DampingAnswer, DampingCases
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from symobs.proof.certificate.claims import Claim
     from symobs.system import StateSpace
+    from symobs.tasks.analysis.strata.strata import RankAnswer
     from symobs.tasks.result import Result
 
 
@@ -31,7 +32,7 @@ _MOST_STEPS = 60
 MOST_STATES, MOST_WITH_PARAMETERS = 12, 4
 
 
-def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Any:
+def read_horizon(plant: StateSpace, value: object, name: str = "horizon") -> Scalar | str:
     """Return `inf`, or the horizon as a scalar: T where none is given.  Raises `InputError`."""
     where, called = f"specification.{name}", "instant" if name == "at_time" else name.replace("_", " ")
     if str(value).strip() in {"inf", "oo", "infinity", "∞"}:  # SymPy's oo too
@@ -66,17 +67,25 @@ def over_horizon(solve: Callable[[], Result], name: str = "horizon") -> Result:
         raise InputError(message, where=f"specification.{name}", repair='write "T" and put the number in') from error
 
 
-def steps_gramian(A: Matrix, C: Matrix, steps: Scalar) -> dict[str, Any]:
-    """Return Σ (Aᵀ)ᵏ Cᵀ C Aᵏ over the steps, and its determinant."""
+def steps_gramian(A: Matrix, C: Matrix, steps: Scalar) -> Matrix:
+    """Return Σ (Aᵀ)ᵏ Cᵀ C Aᵏ over the steps."""
     row, total = C, C.T @ C
     for _ in range(int(steps.fraction()) - 1):
         row = (row @ A).normal()
         total = total + row.T @ row
-    total = total.normal()
-    return {"matrix": total, "determinant": total.determinant()}
+    return total.normal()
 
 
-def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str, Any]) -> dict[str, Any]:
+class GramianOfAllTime(TypedDict):
+    """The polynomial of what is seen; the integral over all time and its determinant where it exists and is found."""
+
+    seen: Scalar
+    matrix: Matrix | None
+    determinant: Scalar | None
+    question: NotRequired[str]
+
+
+def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: RankAnswer) -> GramianOfAllTime:
     """Return the polynomial of the observable part, and the infinite-horizon Gramian if that decays."""
     variable, hidden = plant.variable, test["restricted"]
     seen = A.characteristic_polynomial(variable)
@@ -84,7 +93,7 @@ def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str,
         seen = remainder(seen, hidden.characteristic_polynomial(variable), variable)[0]
     seen = plant.simplified(seen)
     found = stability(seen, variable, plant.symbols.signs, discrete=plant.is_discrete)
-    nothing: dict[str, Any] = {"matrix": None, "determinant": None, "seen": seen}
+    nothing: GramianOfAllTime = {"matrix": None, "determinant": None, "seen": seen}
     if found.verdict == "no":
         return nothing
     order = A.shape[0]
@@ -97,14 +106,14 @@ def infinite_gramian(plant: StateSpace, A: Matrix, C: Matrix, test: Mapping[str,
     return {"matrix": W, "determinant": W.determinant(), "seen": seen}
 
 
-def _of_what_is_seen(A: Matrix, C: Matrix, test: Mapping[str, Any], plant: StateSpace) -> Matrix | None:
+def _of_what_is_seen(A: Matrix, C: Matrix, test: RankAnswer, plant: StateSpace) -> Matrix | None:
     """Solve Lyapunov's equation for the part that is seen: with x₁ = Q x, Q rows of 𝒪, A₁ Q = Q A and W = QᵀW₁Q."""
     order = range(A.shape[0])
     if not test["rank"]:
         return Matrix.zeros(*A.shape)
     if test["rank"] == A.shape[0]:
         return lyapunov(A, C.T @ C, plant)
-    Q: Matrix = test["matrix"].select(test["rows"], order)
+    Q = test["matrix"].select(test["rows"], order)
     square = Q.select(range(Q.shape[0]), test["columns"]).T
 
     def through(rows: Matrix) -> Matrix:  # Y with Y Q = rows
@@ -177,13 +186,21 @@ def stationary(variance: Scalar, end: str, signs: Mapping[str, str]) -> str | No
 _MOST_TERMS = 60
 
 
+class OfTheInitialStateAnswer(DampingAnswer):
+    """The test of observability beside the signs."""
+
+    rank: RankAnswer
+
+
 class OfTheInitialState(DampingCases):
     """A result about x(0), which the output determines where the pair (C, A) is observable."""
+
+    answer: OfTheInitialStateAnswer
 
     @property
     def is_unique(self) -> bool:
         """Whether the pair is observable in general."""
-        return bool(self.answer["rank"]["rank"] == self.plant.order)
+        return self.answer["rank"]["rank"] == self.plant.order
 
     @property
     def further_zeros(self) -> tuple[Scalar, ...]:

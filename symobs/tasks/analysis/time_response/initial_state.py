@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from math import factorial
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Required, Self, TypedDict
 
 from symobs.exact import Matrix, Scalar, kernel
 from symobs.exact.core.generators import all_roots, function_named, normal_form, substitute, symbols_in
@@ -40,8 +40,8 @@ from symobs.tasks.analysis.time_response.damping_cases import (
     time_environment,
 )
 from symobs.tasks.analysis.time_response.horizons import (
-    INFINITE,
     OfTheInitialState,
+    OfTheInitialStateAnswer,
     over_horizon,
     read_functions,
     read_horizon,
@@ -56,6 +56,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_question,
 )
 from symobs.tasks.result import Case, Result, choose, holds, method, page_of, task
+from symobs.tasks.result.answers import named_found, those_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -63,6 +64,7 @@ if TYPE_CHECKING:
     from symobs.proof.derivation.builder import Builder
     from symobs.system import StateSpace
     from symobs.system.specification import Horizon, Name, TimeFunctions
+    from symobs.tasks.analysis.strata.strata import RankAnswer
     from symobs.tasks.analysis.time_response.damping_cases import Signs
 
 
@@ -87,10 +89,49 @@ def derivatives_at_zero(free: Table, count: int) -> list[Scalar]:
     return found
 
 
+class Measured(TypedDict):
+    """Output and input, as functions of t or a column for each sample."""
+
+    output: Matrix
+    input: Matrix | None
+
+
+class InitialStateAsked(Measured):
+    """What is measured over a horizon."""
+
+    horizon: Scalar
+
+
+class Solved(TypedDict, total=False):
+    """x₀; or the only candidate and what its output leaves; or a row w with w 𝒪 = 0 that refutes the data."""
+
+    x0: Required[Matrix | None]
+    candidate: Matrix
+    rest: Matrix
+    row: Matrix
+    start: Matrix
+    refuted: tuple[Scalar, ...]
+
+
+class InitialStateAnswer(Measured, Solved, OfTheInitialStateAnswer, total=False):
+    """Beside x₀ or what refutes the data the motions, and both integrals as functions of t; for samples 𝒪 x₀ = r."""
+
+    horizon: Scalar
+    exponential: Matrix
+    forced: Matrix
+    free: Matrix
+    gramian_function: Matrix
+    moment_function: Matrix
+    stack: Matrix
+    right: Matrix
+    residual: Matrix
+
+
 @dataclass
 class InitialState(OfTheInitialState):
     """x₀ with y = C (e^{At} x₀ + x_f) + D u, where x_f′ = A x_f + B u and x_f(0) = 0; or the proof that there is none."""
 
+    answer: InitialStateAnswer
     task: ClassVar[str] = "initial_state"
     answered_by = ("x0",)
     only_value = ("x0",)
@@ -99,22 +140,29 @@ class InitialState(OfTheInitialState):
     asked_for: ClassVar[tuple[str, ...]] = ("output", "input", "horizon")
 
     @classmethod
-    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant; `asked` holds horizon, output and input as matrices of functions of t."""
+    def of(cls, plant: StateSpace, method_name: str, asked: InitialStateAsked, taken: Signs) -> Self:
+        """Return the result for a plant."""
         m = plant.matrices
         test = rank_answer(m.A, m.C)
-        data = {name: asked[name] for name in ("horizon", "output", "input")}
-        shared = {**data, "x0": None, "taken": taken, "chosen": {}, "rank": test}
+        u_t, y_t, horizon = asked["input"], asked["output"], asked["horizon"]
+        shared: InitialStateAnswer = {
+            "horizon": horizon,
+            "output": y_t,
+            "input": u_t,
+            "x0": None,
+            "taken": taken,
+            "chosen": {},
+            "rank": test,
+        }
         try:
             found, chosen = closed_form(plant, taken)
         except NoClosedForm as error:
             return cls(plant, method_name, {**shared, "question": question_of(error), "factor": error.factor})
         table = found.table()
-        y, seen = table_of(asked["output"]), product(table_of(m.C), table)
-        answer = {**shared, "chosen": chosen, "exponential": matrix_at(table, TIME)}
-        free = y
-        if asked["input"] is not None:
-            u = table_of(asked["input"])
+        free, seen = table_of(y_t), product(table_of(m.C), table)
+        answer: InitialStateAnswer = {**shared, "chosen": chosen, "exponential": matrix_at(table, TIME)}
+        if u_t is not None:
+            u = table_of(u_t)
             rest = motion_from_rest(table, m.B, u)
             free = difference(free, product(table_of(m.C), rest))
             if m.has_feedthrough:
@@ -144,18 +192,10 @@ class InitialState(OfTheInitialState):
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time."""
-        names = (
-            "output",
-            "input",
-            "exponential",
-            "forced",
-            "free",
-            "gramian_function",
-            "moment_function",
-            "rest",
-            "x0",
-        )
-        return tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
+        answer = self.answer
+        motions = answer["output"], answer["input"], answer.get("exponential"), answer.get("forced"), answer.get("free")
+        integrals = answer.get("gramian_function"), answer.get("moment_function")
+        return those_found(*motions, *integrals, answer.get("rest"), answer["x0"])
 
     @property
     def verdict(self) -> str:
@@ -183,23 +223,25 @@ class InitialState(OfTheInitialState):
         roots = {root.value for root in all_roots(*found)}
         return tuple(factor for factor in found if factor not in roots)
 
-    @property
-    def instant(self) -> Scalar | None:
-        """The horizon, where it is finite."""
-        return None if self.answer["horizon"] == INFINITE else self.answer["horizon"]
-
-    def _values(self) -> dict[str, Any]:
+    def _values(self) -> dict[str, Matrix]:
         m, answer = self.plant.matrices, self.answer
-        names = {"exp_At": "exponential", "y_t": "output", "u_t": "input", "x_f": "forced", "y_0": "free", "x_0": "x0"}
-        names |= {"W_t": "gramian_function", "r_t": "moment_function", "candidate": "candidate"}
-        values: dict[str, Any] = {"A": m.A, "B": m.B, "C": m.C, "D": m.D, "O": answer["rank"]["matrix"]}
-        return values | {letter: answer[name] for letter, name in names.items() if answer.get(name) is not None}
+        values = {
+            "A": m.A,
+            "B": m.B,
+            "C": m.C,
+            "D": m.D,
+            "O": answer["rank"]["matrix"],
+            "exp_At": answer["exponential"],
+        }
+        values |= {"W_t": answer["gramian_function"], "r_t": answer["moment_function"]}
+        given = {"y_t": answer["output"], "u_t": answer["input"], "x_f": answer.get("forced"), "y_0": answer["free"]}
+        return values | named_found(given | {"x_0": answer["x0"], "candidate": answer.get("candidate")})
 
     def claims(self) -> Iterator[Claim]:
         """Yield the motion from rest, the output explained, the moment equations, and what excludes others."""
         yield from super().claims()
         if self.answer.get("question") is None:
-            e = time_environment(self.plant, self._values(), self.instant)
+            e = time_environment(self.plant, self._values(), self.end)
             yield from self._about_motion(e)
             yield from self._about_state(e)
         yield from self.observability_claims()
@@ -220,9 +262,8 @@ class InitialState(OfTheInitialState):
         free = letter("y_0", e)
         if "x_0" in e.values:
             yield holds(e, "{free} = C exp_At x_0", free=free)
-            if self.answer["horizon"] != INFINITE:
-                yield from from_zero(["W_t", "r_t"], e)
-                yield self._moments(e)
+            yield from from_zero(["W_t", "r_t"], e)
+            yield self._moments(e)
             return
         at_zero = []
         for _ in range(self.plant.order):
@@ -258,9 +299,9 @@ def _has_functions(value: Scalar) -> bool:
     return any(function_named(name) for name in value.names)
 
 
-def _solved(test: Mapping[str, Any], start: list[Scalar], seen: Table, free: Table) -> dict[str, Any]:
+def _solved(test: RankAnswer, start: list[Scalar], seen: Table, free: Table) -> Solved:
     """Return x₀; or the only candidate and what its output leaves; or a row w with w 𝒪 = 0 that refutes the data."""
-    O: Matrix = test["matrix"]
+    O = test["matrix"]
     right = Matrix.column(start)
     rows, columns = test["rows"], test["columns"]
     order = O.shape[1]
@@ -275,10 +316,10 @@ def _solved(test: Mapping[str, Any], start: list[Scalar], seen: Table, free: Tab
         null = kernel(O.T)
         for vector in (null.select(range(null.shape[0]), [j]) for j in range(null.shape[1])):
             if not normal_form((vector.T @ right)[0, 0]).is_zero:
-                return {"row": vector.T, "start": right, "refuted": ((vector.T @ right)[0, 0],)}
+                return {"x0": None, "row": vector.T, "start": right, "refuted": ((vector.T @ right)[0, 0],)}
     rest = difference(free, product(seen, table_of(state)))
     if any(not entry.is_zero for row in rest for entry in row):
-        return {"candidate": state, "rest": matrix_at(rest, TIME), "refuted": tuple(_refuting(rest))}
+        return {"x0": None, "candidate": state, "rest": matrix_at(rest, TIME), "refuted": tuple(_refuting(rest))}
     return {"x0": state}
 
 
@@ -300,7 +341,7 @@ def _refuting(rest: Table) -> Iterator[Scalar]:
 
 
 @method("initial_state/moments", source="kalman1963a")
-def moments(plant: StateSpace, asked: Mapping[str, Any]) -> InitialState:
+def moments(plant: StateSpace, asked: InitialStateAsked) -> InitialState:
     """Take the input's part away, take the candidate from the derivatives at 0, hold it to the data at all times."""
     return InitialState.of(plant, "moments", asked, {})
 
@@ -336,10 +377,10 @@ def initial_state(
         plant.require("B", task="initial_state")
         u, _ = read_functions(input, plant, "input", plant.inputs)
     end = read_horizon(plant, horizon)
-    if end == INFINITE:
+    if isinstance(end, str):
         message = "the interval of measurement is finite"
         raise InputError(message, where="specification.horizon", repair='write "T", or a number above 0')
-    asked = {"output": y, "input": u, "horizon": end}
+    asked: InitialStateAsked = {"output": y, "input": u, "horizon": end}
     return over_horizon(lambda: choose("initial_state", method, "moments").solve(plant, asked))
 
 
@@ -360,7 +401,7 @@ def _of_samples(plant: StateSpace, output: object, given: object, horizon: objec
         if u.shape[1] < y.shape[1]:  # the last one may be missing, or all from one on: they are 0
             u = Matrix.block([[u, Matrix.zeros(plant.inputs, y.shape[1] - u.shape[1])]])
     choose("initial_state", method_name, "moments")
-    asked = {"output": y, "input": u}
+    asked: Measured = {"output": y, "input": u}
     return InitialStateOfSamples.of(plant, "moments", asked, {}).asked(method_name)
 
 
@@ -374,7 +415,7 @@ _WARNED_UP_TO = 3
 @page_of(InitialState)
 def write_initial_state(page: Builder, result: InitialState) -> None:
     """Write the document's five steps."""
-    page.in_time(*result.everything(), at=result.instant)
+    page.in_time(*result.everything(), at=result.end)
     result.state_data(page)
     with page.section("initial_state"):
         tell_polynomial(page)
@@ -399,7 +440,7 @@ def _write_branch(page: Builder, result: InitialState) -> None:
     if answer["x0"] is None:
         _tell_refusal(result, page, free)
         return
-    _tell_moments(result, page, free)
+    _tell_moments(result, page, free, answer["x0"])
 
 
 def _entry(matrix: Matrix) -> Matrix | Scalar:
@@ -428,11 +469,10 @@ def _tell_forced(result: InitialState, page: Builder) -> Term:
     return page.define("y_0", moved, _entry(answer["free"]), closing=False, **told)
 
 
-def _tell_moments(result: InitialState, page: Builder, free: Term) -> None:
+def _tell_moments(result: InitialState, page: Builder, free: Term, x0: Matrix) -> None:
     answer = result.answer
     C, Phi, horizon = page["C"], page["exp_At"], answer["horizon"]
     end = {"t": horizon}
-    x0: Matrix = answer["x0"]
     if not result.is_unique:
         page.define("x_0", x0, say="initial_not_unique", answer=True, closing=False)
         N = answer["rank"]["kernel"]
@@ -534,8 +574,8 @@ class InitialStateOfSamples(InitialState):
     """x₀ with O x₀ = r, the samples without the forced output; or the proof that there is none."""
 
     @classmethod
-    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant; `asked` holds the samples of the output and of the input."""
+    def of(cls, plant: StateSpace, method_name: str, asked: Measured, taken: Signs) -> Self:
+        """Return the result for a plant."""
         m, y, u = plant.matrices, asked["output"], asked["input"]
         test = rank_answer(m.A, m.C)
         rows, state = [m.C], Matrix.zeros(plant.order, 1)
@@ -548,7 +588,7 @@ class InitialStateOfSamples(InitialState):
             right += sample.entries
             rows.append((rows[-1] @ m.A).normal())
         O, r = Matrix.block([[row] for row in rows[:-1]]), Matrix.column(list(map(normal_form, right)))
-        answer = {
+        answer: InitialStateAnswer = {
             "output": y,
             "input": u,
             "rank": test,
@@ -584,7 +624,7 @@ class InitialStateOfSamples(InitialState):
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The samples and the state."""
-        return tuple(self.answer[name] for name in ("output", "input", "x0") if self.answer.get(name) is not None)
+        return those_found(self.answer["output"], self.answer["input"], self.answer["x0"])
 
     def claims(self) -> Iterator[Claim]:
         """Yield the stacked equations, and that the state solves them or that a row refutes them."""
@@ -615,16 +655,17 @@ class InitialStateOfSamples(InitialState):
     def free(self, e: Environment) -> list[Term]:
         """Return y(k) − Σ C A^(k−1−i) B u(i) − D u(k)."""
         A, B, C, D, y, u = *(letter(name, e) for name in "ABCD"), self.answer["output"], self.answer["input"]
+        inputs = [] if u is None else [_column(u, i) for i in range(u.shape[1])]
         found = []
         for k in range(y.shape[1]):
             sample = Term(Literal(_column(y, k)), e)
-            for i in range(k if u is not None else 0):
-                if _column(u, i).is_zero:
+            for i, moved in enumerate(inputs[:k]):
+                if moved.is_zero:
                     continue
                 power = C @ A ** (k - 1 - i) if k - 1 - i else C
-                sample = sample - power @ B @ Term(Literal(_column(u, i)), e)
-            if u is not None and self.plant.matrices.has_feedthrough and not _column(u, k).is_zero:
-                sample = sample - D @ Term(Literal(_column(u, k)), e)
+                sample = sample - power @ B @ Term(Literal(moved), e)
+            if inputs and self.plant.matrices.has_feedthrough and not inputs[k].is_zero:
+                sample = sample - D @ Term(Literal(inputs[k]), e)
             found.append(sample)
         return found
 

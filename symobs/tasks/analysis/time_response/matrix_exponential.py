@@ -25,6 +25,7 @@ from symobs.proof.derivation.builder import Builder, relation
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import formula_of_factored, given, is_narrow
 from symobs.tasks.analysis.time_response.damping_cases import (
+    DampingAnswer,
     DampingCases,
     Signs,
     exponential_claims,
@@ -96,10 +97,17 @@ def require_continuous(plant: StateSpace, task_name: str) -> None:
         raise InputError(message, where="plant.A", repair="give the parameter another name")
 
 
+class MatrixExponentialAnswer(DampingAnswer):
+    """Φ(t), or Aᵏ in discrete time."""
+
+    matrix: Matrix | None
+
+
 @dataclass
 class MatrixExponential(DampingCases):
     """Φ(t) with Φ′ = A Φ and Φ(0) = I, which has one solution."""
 
+    answer: MatrixExponentialAnswer
     task: ClassVar[str] = "matrix_exponential"
     answered_by = ("matrix",)
     only_value = ("matrix",)
@@ -112,8 +120,8 @@ class MatrixExponential(DampingCases):
         try:
             found, chosen = closed_form(plant, taken, sums=not plant.equations)
         except NoClosedForm as error:
-            answer = {"matrix": None, "question": question_of(error), "factor": error.factor}
-            return cls(plant, method_name, {**answer, "taken": taken, "chosen": {}})
+            answer: MatrixExponentialAnswer = {"matrix": None, "taken": taken, "chosen": {}}
+            return cls(plant, method_name, {**answer, "question": question_of(error), "factor": error.factor})
         return cls(plant, method_name, {"matrix": found.matrix(TIME), "taken": taken, "chosen": chosen})
 
     def claims(self) -> Iterator[Claim]:
@@ -309,12 +317,11 @@ class MatrixPower(MatrixExponential):
     @classmethod
     def of(cls, plant: StateSpace, method_name: str, _: Mapping[str, Any], taken: Signs) -> Self:
         """Return the result for a plant."""
-        shared = {"taken": taken, "chosen": {}}
+        answer: MatrixExponentialAnswer = {"matrix": None, "taken": taken, "chosen": {}}
         try:
-            return cls(plant, method_name, {"matrix": powers_of(plant.matrices.A, plant.variable), **shared})
+            return cls(plant, method_name, {**answer, "matrix": powers_of(plant.matrices.A, plant.variable)})
         except NoClosedForm as error:
-            nothing = {"matrix": None, "question": question_of(error), "factor": error.factor}
-            return cls(plant, method_name, {**nothing, **shared})
+            return cls(plant, method_name, {**answer, "question": question_of(error), "factor": error.factor})
 
     def claims(self) -> Iterator[Claim]:
         """Yield the recursion and the start."""
@@ -340,7 +347,7 @@ class MatrixPower(MatrixExponential):
             self.write_branches(page, _write_power)
 
 
-def _write_power(page: Builder, result: DampingCases) -> None:
+def _write_power(page: Builder, result: MatrixPower) -> None:
     """Write one branch."""
     if result.answer["matrix"] is None:
         tell_open_power(page, result.answer["factor"])

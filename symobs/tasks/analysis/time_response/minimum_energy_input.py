@@ -6,7 +6,7 @@ W is the controllability Gramian over the horizon.  Where it is singular, d must
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NotRequired, Self, TypedDict
 
 from symobs.exact import Matrix, Scalar, independent_rows
 from symobs.exact.core.generators import function_named, identities, normal_form, substitute
@@ -20,9 +20,16 @@ from symobs.ground.errors import InputError
 from symobs.proof.derivation.builder import relation
 from symobs.system.conditions import Condition, vanishing_factors
 from symobs.system.specification import read_gain
-from symobs.tasks.analysis.time_response.damping_cases import DampingCases, Signs, rate_of, reject, time_environment
-from symobs.tasks.analysis.time_response.gramian import Gramian
-from symobs.tasks.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
+from symobs.tasks.analysis.time_response.damping_cases import (
+    DampingAnswer,
+    DampingCases,
+    Signs,
+    rate_of,
+    reject,
+    time_environment,
+)
+from symobs.tasks.analysis.time_response.gramian import Gramian, GramianAnswer
+from symobs.tasks.analysis.time_response.horizons import over_horizon, read_horizon
 from symobs.tasks.analysis.time_response.initial_state_covariance import too_long
 from symobs.tasks.analysis.time_response.matrix_exponential import (
     TIME,
@@ -33,6 +40,7 @@ from symobs.tasks.analysis.time_response.matrix_exponential import (
     tell_question,
 )
 from symobs.tasks.result import Result, choose, holds, method, page_of, task
+from symobs.tasks.result.answers import named_found, those_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -45,6 +53,26 @@ if TYPE_CHECKING:
     from symobs.system.specification import Horizon, MatrixText, Name
 
 
+class MinimumEnergyAsked(TypedDict):
+    """The horizon and both states."""
+
+    horizon: Scalar
+    initial: Matrix
+    final: Matrix
+
+
+class MinimumEnergyAnswer(MinimumEnergyAsked, DampingAnswer):
+    """The input, the Gramian, d, λ and the energy; or w and wᵀ d, which refute the final state."""
+
+    input: Matrix | None
+    gramian: Matrix | None
+    difference: NotRequired[Matrix]
+    multiplier: NotRequired[Matrix]
+    energy: NotRequired[Scalar]
+    w: NotRequired[Matrix]
+    left: NotRequired[Scalar]
+
+
 @dataclass
 class MinimumEnergyInput(DampingCases):
     """λ with W λ = d, the input u = Bᵀ e^{Aᵀ(T−t)} λ and its energy dᵀ λ; or w with wᵀ [B, AB, …] = 0 and wᵀ d ≠ 0.
@@ -52,6 +80,7 @@ class MinimumEnergyInput(DampingCases):
     `inner` is the controllability Gramian, with its own claims.
     """
 
+    answer: MinimumEnergyAnswer
     inner: Gramian
 
     task: ClassVar[str] = "minimum_energy_input"
@@ -61,29 +90,37 @@ class MinimumEnergyInput(DampingCases):
     asked_for: ClassVar[tuple[str, ...]] = ("horizon", "initial", "final")
 
     @classmethod
-    def of(cls, plant: StateSpace, method_name: str, asked: Mapping[str, Any], taken: Signs) -> Self:
-        """Return the result for a plant; `asked` holds the horizon and both states."""
+    def of(cls, plant: StateSpace, method_name: str, asked: MinimumEnergyAsked, taken: Signs) -> Self:
+        """Return the result for a plant."""
         end = asked["horizon"]
         inner = Gramian.of(plant, "integral", {"of": "controllability", "horizon": end}, taken)
-        known = inner.answer
-        answer: dict[str, Any] = {name: asked[name] for name in cls.asked_for}
-        answer |= {"taken": taken, "chosen": known["chosen"], "input": None, "gramian": known["matrix"]}
-        if known["matrix"] is None:
-            return cls(plant, method_name, answer | {n: known[n] for n in ("question", "factor")}, inner)
+        known, W = inner.answer, inner.answer["matrix"]
+        answer: MinimumEnergyAnswer = {
+            "horizon": end,
+            "initial": asked["initial"],
+            "final": asked["final"],
+            "taken": taken,
+            "chosen": known["chosen"],
+            "input": None,
+            "gramian": W,
+        }
+        if W is None:
+            answer |= {"question": known["question"], "factor": known["factor"]}
+            return cls(plant, method_name, answer, inner)
         if not plant.is_discrete and (open_question := _open_question(plant, known)):
-            return cls(plant, method_name, answer | {"question": open_question, "factor": None}, inner)
-        powers = _powers(plant, inner)
+            return cls(plant, method_name, {**answer, "question": open_question, "factor": None}, inner)
+        powers = _powers(plant, inner, end)
         moved = (asked["final"] - powers[0] @ asked["initial"]).normal()
         answer["difference"] = d = _written(moved)
-        N: Matrix = known["rank"]["kernel"]
+        N = known["rank"]["kernel"]
         for j in range(N.shape[1]):
             w = N.select(range(N.shape[0]), [j])
             left = normal_form(plant.simplified((w.T @ d)[0, 0]))
             if not left.is_zero:
-                return cls(plant, method_name, answer | {"w": w, "left": left}, inner)
-        balance = known["matrix"], d
+                return cls(plant, method_name, {**answer, "w": w, "left": left}, inner)
+        balance = W, d
         if not plant.is_discrete:
-            balance = _in_common_exponentials(known["matrix"]), _in_common_exponentials(d)
+            balance = _in_common_exponentials(W), _in_common_exponentials(d)
         answer["multiplier"] = lam = _written(_solved(*balance, independent_rows(N, plant.ideal)))
         rows = [plant.matrices.B.T @ power.T @ lam for power in powers[1:]]
         answer["input"] = _written(Matrix.block([rows]))
@@ -93,9 +130,9 @@ class MinimumEnergyInput(DampingCases):
     @property
     def matrices(self) -> tuple[Matrix | Scalar, ...]:
         """The functions of time and of the horizon."""
-        names = ("initial", "final", "difference", "multiplier", "input", "energy", "left")
-        own = tuple(self.answer[name] for name in names if self.answer.get(name) is not None)
-        return (*own, *self.inner.matrices)
+        answer = self.answer
+        found = answer.get("difference"), answer.get("multiplier"), answer["input"], answer.get("energy")
+        return those_found(answer["initial"], answer["final"], *found, answer.get("left"), *self.inner.matrices)
 
     @property
     def all_certificates(self) -> tuple[Certificate, ...]:
@@ -143,20 +180,19 @@ class MinimumEnergyInput(DampingCases):
         answer, inner, m = self.answer, self.inner, self.plant.matrices
         if (answer.get("w") is None) != (answer.get("multiplier") is not None):
             reject("an input exists exactly where no row shows that there is none")
-        names = {
-            "d_r": "difference",
-            "lam_e": "multiplier",
-            "u_t": "input",
-            "E_u": "energy",
-            "x_0": "initial",
-            "x_1f": "final",
+        values: dict[str, Matrix | Scalar | None] = {
+            "d_r": answer.get("difference"),
+            "lam_e": answer.get("multiplier"),
+            "u_t": answer["input"],
+            "E_u": answer.get("energy"),
+            "x_0": answer["initial"],
+            "x_1f": answer["final"],
+            "W": answer["gramian"],
+            "w": answer.get("w"),
         }
-        values: dict[str, Any] = {name: answer[of] for name, of in names.items() if answer.get(of) is not None}
-        values |= {"A": m.A, "B": m.B, "W": answer["gramian"], "w": answer.get("w")}
-        powers = _powers(self.plant, inner)
-        values |= {f"Phi_{k}": power for k, power in enumerate(powers)}
-        known = {name: value for name, value in values.items() if value is not None}
-        e = time_environment(self.plant, known, None if self.plant.is_discrete else answer["horizon"])
+        powers = _powers(self.plant, inner, answer["horizon"])
+        values |= {"A": m.A, "B": m.B, **{f"Phi_{k}": power for k, power in enumerate(powers)}}
+        e = time_environment(self.plant, named_found(values), None if self.plant.is_discrete else answer["horizon"])
         yield from self._about_powers(e, len(powers))
         yield holds(e, "d_r = x_1f - Phi_0 x_0")
         if answer.get("w") is not None:
@@ -191,14 +227,15 @@ class MinimumEnergyInput(DampingCases):
     def fields(self) -> Mapping[str, Any]:
         """The input, its energy and the Gramian; where there is none, the row that shows it."""
         u, w, asked = self.answer["input"], self.answer.get("w"), self.answer.get("question")
+        shown: object = u
         if u is not None and 1 in u.shape:
-            u = u[0, 0] if u.shape == (1, 1) and not self.plant.is_discrete else list(u.entries)
-        found = {"input": u, "energy": self.answer.get("energy"), "gramian": self.answer["gramian"]}
+            shown = u[0, 0] if u.shape == (1, 1) and not self.plant.is_discrete else list(u.entries)
+        found = {"input": shown, "energy": self.answer.get("energy"), "gramian": self.answer["gramian"]}
         found |= {"unreachable": None if w is None else list(w.entries)}
         return {**found, **({"question": asked} if asked else {})}
 
 
-def _open_question(plant: StateSpace, known: Mapping[str, Any]) -> str:
+def _open_question(plant: StateSpace, known: GramianAnswer) -> str:
     """Return the question that stays open where the Gramian cannot be inverted readably."""
     if "exponential" not in known:
         return f"the inverse of the {plant.order}x{plant.order} Gramian, whose entries are sums over roots"
@@ -220,9 +257,8 @@ def _seen_steps(result: MinimumEnergyInput) -> int:
     return min(order, int(end.fraction())) if result.plant.is_discrete else order
 
 
-def _powers(plant: StateSpace, inner: Gramian) -> list[Matrix]:
+def _powers(plant: StateSpace, inner: Gramian, end: Scalar) -> list[Matrix]:
     """Return e^{AT} and e^{A(T−t)}; in discrete time A^N, and A^{N−1}, …, A, I."""
-    end = inner.answer["horizon"]
     if plant.is_discrete:
         found = [Matrix.identity(plant.order)]
         for _ in range(int(end.fraction())):
@@ -250,7 +286,7 @@ def _solved(W: Matrix, d: Matrix, hidden: tuple[int, ...]) -> Matrix:
 
 
 @method("minimum_energy_input/gramian", source="kalman1963a; kailath1980, ch. 9")
-def by_gramian(plant: StateSpace, asked: Mapping[str, Any]) -> MinimumEnergyInput:
+def by_gramian(plant: StateSpace, asked: MinimumEnergyAsked) -> MinimumEnergyInput:
     """Solve W λ = x_f − e^{AT} x₀ for λ; then u(t) = Bᵀ e^{Aᵀ(T−t)} λ."""
     return MinimumEnergyInput.of(plant, "gramian", asked, {})
 
@@ -284,16 +320,16 @@ def minimum_energy_input(
         )
     size, end = (plant.order, 1), read_horizon(plant, horizon)
     states = {"initial": initial, "final": final}
-    asked = {n: Matrix.zeros(*size) if v is None else read_gain(v, plant, n, size) for n, v in states.items()}
-    if end == INFINITE:
+    given = {n: Matrix.zeros(*size) if v is None else read_gain(v, plant, n, size) for n, v in states.items()}
+    if isinstance(end, str):
         message = "the final state is to be reached at a finite time"
         raise InputError(message, where="specification.horizon", repair='write "T", or a number above 0')
-    if isinstance(end, Scalar) and "t" in end.names:
+    if "t" in end.names:
         message = "the input is a function of t, which cannot be its horizon, too"
         raise InputError(message, where="specification.horizon", repair='write "T", or a number above 0')
     if not plant.is_discrete:
         require_continuous(plant, "minimum_energy_input")
-    asked["horizon"] = end
+    asked: MinimumEnergyAsked = {"horizon": end, "initial": given["initial"], "final": given["final"]}
     return over_horizon(lambda: choose("minimum_energy_input", method, "gramian").solve(plant, asked))
 
 
@@ -303,8 +339,9 @@ def minimum_energy_input(
 @page_of(MinimumEnergyInput)
 def write_minimum_energy_input(page: Builder, result: MinimumEnergyInput) -> None:
     """Write the whole page."""
-    powers = _powers(result.plant, result.inner) if result.answer.get("difference") is not None else []
-    page.in_time(*result.everything(), *powers, at=None if result.plant.is_discrete else result.answer["horizon"])
+    end = result.answer["horizon"]
+    powers = _powers(result.plant, result.inner, end) if "difference" in result.answer else []
+    page.in_time(*result.everything(), *powers, at=None if result.plant.is_discrete else end)
     result.state_data(page)
     with page.section("minimum_energy_input"):
         if not result.plant.is_discrete:
@@ -314,13 +351,14 @@ def write_minimum_energy_input(page: Builder, result: MinimumEnergyInput) -> Non
 
 def _write_branch(page: Builder, result: MinimumEnergyInput) -> None:
     answer, plant, A = result.answer, result.plant, page["A"]
-    if answer.get("question") is not None:
-        if answer["factor"] is None and answer["gramian"] is not None:
-            page.remark("energy_open")
-        else:
-            tell_question(page, answer["factor"])
+    u, known, end = answer["input"], answer["gramian"], answer["horizon"]
+    if known is None:
+        tell_question(page, answer["factor"])
         return
-    end, powers = answer["horizon"], _powers(plant, result.inner)
+    if "question" in answer:
+        page.remark("energy_open")
+        return
+    powers = _powers(plant, result.inner, end)
     x_0, x_f = page.set("x_0", answer["initial"]), page.set("x_1f", answer["final"])
     stated = (page.line("x_0 = #"), page.line("x_1f = #"))
     steps = len(powers) - 1
@@ -335,10 +373,10 @@ def _write_branch(page: Builder, result: MinimumEnergyInput) -> None:
         over = page.set("Phi_T", powers[0])
         page.conclude_silently(relation(over, page["exp_At"].at("t", end)))
     d = page.define("d_r", x_f - over @ x_0, answer["difference"], say="energy_difference", closing=False)
-    if answer.get("w") is not None:
+    if u is None:
         _tell_unreachable(page, result, d)
         return
-    W = _tell_gramian(page, result)
+    W = _tell_gramian(page, result, known)
     lam = page.define("lam_e", page.value(answer["multiplier"]), say="energy_multiplier", closing=False)
     page.verified("energy_solved", equation=relation(W @ lam, d))
     if plant.is_discrete:
@@ -346,13 +384,12 @@ def _write_branch(page: Builder, result: MinimumEnergyInput) -> None:
             page("B.T {k} lam_e", k=A.T ** (steps - 1 - k)) if k < steps - 1 else page["B.T lam_e"]
             for k in range(steps)
         ]
-        page.define("U_k", block([moved]), answer["input"], say="energy_sequence", closing=False, answer=True)
+        page.define("U_k", block([moved]), u, say="energy_sequence", closing=False, answer=True)
     else:
         back = page.set("Phi_b", powers[1])
         page.conclude_silently(
             page.line("{rate} = -A Phi_b", rate=rate_of(back)), page.line("{end} = I", end=back.at("t", end))
         )
-        u = answer["input"]
         page.define(
             "u_t",
             "B.T Phi_b.T lam_e",
@@ -371,8 +408,8 @@ def _write_branch(page: Builder, result: MinimumEnergyInput) -> None:
     )
 
 
-def _tell_gramian(page: Builder, result: MinimumEnergyInput) -> Term:
-    A, B, W = page["A"], page["B"], result.answer["gramian"]
+def _tell_gramian(page: Builder, result: MinimumEnergyInput, W: Matrix) -> Term:
+    A, B = page["A"], page["B"]
     if result.plant.is_discrete:
         total = page["B B.T"]
         steps = int(result.answer["horizon"].fraction())

@@ -9,7 +9,7 @@ from symobs.exact.core.generators import function_named, functions_in, symbols_i
 from symobs.exact.time_functions.matrix_power import PowerOf
 from symobs.ground.errors import InputError, ShapeMismatch
 from symobs.system.specification import parse_in_steps, read_gain
-from symobs.tasks.analysis.time_response.horizons import INFINITE, read_functions, read_horizon
+from symobs.tasks.analysis.time_response.horizons import read_functions, read_horizon
 from symobs.tasks.analysis.time_response.initial_state import MOST_SAMPLES
 from symobs.tasks.analysis.time_response.matrix_exponential import require_continuous, require_no_instant
 from symobs.tasks.analysis.time_response.response_in_steps import ResponseInSteps
@@ -63,7 +63,7 @@ def response(
         message = "nothing moves the plant: neither an initial state nor an input is given"
         raise InputError(message, where="specification.input", repair='give input = "1" for a step, or initial')
     instant = None if at_time is None else read_horizon(plant, at_time, "at_time")
-    if instant == INFINITE:
+    if isinstance(instant, str):
         message = "the value at infinity is a limit"
         raise InputError(
             message, where="specification.at_time", repair="give an instant; the limit is seen in the output"

@@ -28,7 +28,7 @@ from symobs.tasks.analysis.time_response.damping_cases import (
     rate_of,
     time_environment,
 )
-from symobs.tasks.analysis.time_response.horizons import INFINITE, over_horizon, read_horizon
+from symobs.tasks.analysis.time_response.horizons import over_horizon, read_horizon
 from symobs.tasks.analysis.time_response.matrix_exponential import (
     TIME,
     closed_form,
@@ -227,7 +227,7 @@ def zero_order_hold(
     require_continuous(plant, "zero_order_hold")
     plant = plant.knowing(sampling_period)
     T = read_horizon(plant, sampling_period, "sampling_period")
-    if T == INFINITE:
+    if isinstance(T, str):
         message = "the sampling period inf is no number"
         raise InputError(message, where="specification.sampling_period", repair='write "T", or a number above 0')
     if controller is not None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cached_property
 from itertools import combinations
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypedDict
 
 from symobs.exact import Matrix, Scalar, derivative, echelon, independent_rows, modulo
 from symobs.exact.core.generators import substitute
@@ -29,6 +29,7 @@ from symobs.tasks.analysis.strata.loci import distance_from
 from symobs.tasks.analysis.strata.strata import common_zeros, losses, strata
 from symobs.tasks.analysis.time_response.damping_cases import reject, vanishing_denominators
 from symobs.tasks.analysis.time_varying.time_varying_solution import (
+    ClosedForms,
     TimeVaryingRequest,
     closed_form,
     dependences,
@@ -39,6 +40,7 @@ from symobs.tasks.analysis.time_varying.time_varying_solution import (
 )
 from symobs.tasks.analysis.time_varying.transition_matrix import START, TERMS_UP_TO, TIME, in_time
 from symobs.tasks.result import Case, Result, choose, equality, holds, method, task_in_time
+from symobs.tasks.result.answers import named_found, those_found
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -66,6 +68,24 @@ def stack_of(A: Matrix, C: Matrix, ideal: Ideal | None = None) -> tuple[Matrix, 
     return tuple(rows)
 
 
+class StackTest(TypedDict):
+    """The stack O, its rank r, V with C V = 0 and A V − V' = V X, an r×r minor, and an instant at which it is not 0."""
+
+    matrix: Matrix
+    stack: tuple[Matrix, ...]
+    rank: int
+    hidden: Matrix
+    restricted: Matrix
+    rows: tuple[int, ...]
+    columns: tuple[int, ...]
+    free: tuple[int, ...]
+    point: Scalar | None
+
+
+class TimeVaryingAnswer(StackTest, ClosedForms):
+    """The rank test, and what has a closed form."""
+
+
 @dataclass
 class TimeVaryingObservability(Result):
     """The stack N₀, …, N_{n−1} with its rank over the functions of t, and with a closed form Φ, Gramian and x₀.
@@ -75,6 +95,7 @@ class TimeVaryingObservability(Result):
     C Φ v = 0; G' = Φᵀ Cᵀ C Φ, G(start) = 0 for the Gramian G(end); C (Φ x₀ + f) + D u = y with f' = A f + B u, f(start) = 0.
     """
 
+    answer: TimeVaryingAnswer
     asked_for: TimeVaryingRequest
 
     task: ClassVar[str] = "time_varying_observability"
@@ -101,25 +122,26 @@ class TimeVaryingObservability(Result):
             V = _without_common_factors(V, free, ideal)
         moved = A @ V - derivative(V, TIME)
         X = V.select(free, count).solve(moved.select(free, count)) if vectors else Matrix.zeros(0, 0)
-        answer: dict[str, Any] = {
+        rows = independent_rows(O.select(range(O.shape[0]), columns), ideal)
+        test: StackTest = {
             "matrix": O,
             "stack": stack,
             "rank": len(columns),
             "hidden": V,
             "restricted": modulo(X.normal(), ideal),
-            "rows": independent_rows(O.select(range(O.shape[0]), columns), ideal),
+            "rows": rows,
             "columns": columns,
             "free": free,
+            "point": instant_where_not_zero(plant, asked_for.interval, O.select(rows, columns)),
         }
-        answer["point"] = instant_where_not_zero(plant, asked_for.interval, O.select(answer["rows"], columns))
-        return cls(plant, method_name, answer | closed_form(plant, asked_for, answer), asked_for)
+        return cls(plant, method_name, {**test, **closed_form(plant, asked_for, O, V)}, asked_for)
 
     # -- claims ------------------------------------------------------------------------------------------------------
 
     def claims(self) -> Iterator[Claim]:
         """Yield the stack, the rank from below and above, and the closed forms where there are any."""
         m, answer, order = self.plant.matrices, self.answer, self.plant.order
-        values = {
+        values: dict[str, Matrix | None] = {
             "A": m.A,
             "B": m.B,
             "C": m.C,
@@ -132,7 +154,7 @@ class TimeVaryingObservability(Result):
         values |= {"Phi": answer["transition_matrix"], "G": answer["gramian_in_time"], "v": answer["kernel"]}
         values |= {"f": answer["forced"], "x_0": answer["x0"], "y": self.asked_for.output, "u": self.asked_for.input}
         signs = self.plant.symbols.signs
-        meant = {name: value for name, value in values.items() if value is not None}
+        meant = named_found(values)
         named, zero = dependences([*meant.values(), *self.closed_forms], self.asked_for)
         e = Environment(TIME, meant, signs=signs, coefficients=named, relations=zero)
         yield equality(len(answer["stack"]), order, e, "the stack has n blocks")
@@ -143,6 +165,8 @@ class TimeVaryingObservability(Result):
         stacked = block([[e[f"N_{k}"]] for k in range(order)])
         yield holds(e, "O = {stacked}", stacked=stacked)
         yield from self._rank_claims(e)
+        if answer["gramian"] is not None and None in (answer["transition_matrix"], answer["gramian_in_time"]):
+            reject("the Gramian stands without what it is the integral of")
         if answer["transition_matrix"] is not None:
             yield from self._transition_claims(e)
         if answer["forced"] is not None:
@@ -160,7 +184,7 @@ class TimeVaryingObservability(Result):
             minor = determinant_term(self.answer["matrix"].select(answer["rows"], answer["columns"]), e)
             yield Claim(relation(minor, "!==", 0), e, f"a minor of order {found} of the stack is not identically 0")
             if answer["point"] is not None:
-                yield from self._inside_claims(e)
+                yield from self._inside_claims(e, answer["point"])
                 instant = minor.at(TIME, answer["point"])
                 yield Claim(relation(instant, "!=", 0), e, f"it is not 0 at t = {answer['point']}")
         if hidden:
@@ -168,9 +192,9 @@ class TimeVaryingObservability(Result):
             yield holds(e, "A V - V' = V X")
             yield Claim(relation(determinant_term(V.select(answer["free"], range(hidden)), e), "!==", 0), e)
 
-    def _inside_claims(self, e: Environment) -> Iterator[Claim]:
+    def _inside_claims(self, e: Environment, instant: Scalar) -> Iterator[Claim]:
         """Yield that the instant which shows the rank is one of the interval."""
-        asked, point = self.asked_for, Term(Literal(self.answer["point"]), e)
+        asked, point = self.asked_for, Term(Literal(instant), e)
         yield equality(point.derivative, 0, e, "the instant is one")
         if asked.interval is not None:
             e = replace(e, positive=(asked.end - asked.start,))
@@ -184,7 +208,7 @@ class TimeVaryingObservability(Result):
         yield holds(e, "{value} = I", value=Phi.at(TIME, Scalar.symbol(START)))
         seen = e["C"] @ Phi.at(START, asked.start)
         hidden = order - answer["rank"]
-        if answer["kernel"] is None and _has_value(answer["transition_matrix"], asked.start):
+        if answer["kernel"] is None and _has_value(Phi.value, asked.start):
             reject("the states that are never seen are missing")
         if answer["kernel"] is not None:
             yield equality(answer["kernel"].shape[1], hidden, e, "there are n - rank vectors v")
@@ -192,7 +216,7 @@ class TimeVaryingObservability(Result):
             yield holds(e, "v' = 0")
             yield holds(e, "{seen} v = 0", seen=seen)
             yield holds(e, "det(v.T v) !== 0", "the vectors v are independent")
-        if answer["gramian_in_time"] is not None:
+        if answer["gramian"] is not None:
             G = e["G"]
             yield equality(G.derivative, seen.T @ seen, e)
             yield equality(G.at(TIME, asked.start), Matrix.zeros(order, order), e)
@@ -216,15 +240,17 @@ class TimeVaryingObservability(Result):
 
     def _refusal_claims(self, e: Environment) -> Iterator[Claim]:
         """Yield W x = ∫ Φᵀ Cᵀ ξ, which has one solution, for a state x whose output is another one."""
-        answer, asked, W = self.answer, self.asked_for, self.answer["gramian"]
-        if answer["candidate"] is None:
+        asked, W, moment = self.asked_for, self.answer["gramian"], self.answer["moment"]
+        if self.answer["candidate"] is None:
             return
+        if W is None or moment is None:
+            reject("the integrals that lead to the only state are missing")
         seen = e["C"] @ e["Phi"].at(START, asked.start)
         xi = e["y"] - e["C"] @ e["f"]
         xi = xi - e["D"] @ e["u"] if "u" in e.values else xi
-        state = Term(Literal(answer["candidate"]), e)
+        state = Term(Literal(self.answer["candidate"]), e)
         limits = (TIME, asked.start, asked.end)
-        whole = Term(Integral((seen.T @ xi).formula, Literal(answer["moment"]), *limits), e)
+        whole = Term(Integral((seen.T @ xi).formula, Literal(moment), *limits), e)
         yield Claim(relation(Term(Literal(W), e).apply("det"), "!==", 0), e)
         yield equality(Term(Literal(W), e) @ state, whole, e)
         yield equality(state.derivative, Matrix.zeros(self.plant.order, 1), e)
@@ -310,7 +336,7 @@ class TimeVaryingObservability(Result):
         return tuple(
             case
             for case in found
-            if case.result is None
+            if not isinstance(case.result, TimeVaryingObservability)
             or case.result.answer["rank"] != rank
             or case.result.case_tree
             or any(condition.expression in others for condition in case.when)
@@ -319,16 +345,16 @@ class TimeVaryingObservability(Result):
     @property
     def closed_forms(self) -> tuple[Matrix | Scalar, ...]:
         """The matrices that may be functions of time, with the given signals."""
-        names = ("transition_matrix", "gramian", "gramian_in_time", "forced", "x0", "candidate", "moment")
-        found = (*(self.answer[name] for name in names), self.asked_for.output, self.asked_for.input)
-        return tuple(value for value in (*found, self.gramian_determinant) if value is not None)
+        answer, asked = self.answer, self.asked_for
+        found = answer["transition_matrix"], answer["gramian"], answer["gramian_in_time"], answer["forced"]
+        of_output = answer["x0"], answer["candidate"], answer["moment"], asked.output, asked.input
+        return those_found(*found, *of_output, self.gramian_determinant)
 
     @property
     def never_seen(self) -> Matrix:
         """The states that are never seen: at the start where Φ is known, else moving with t."""
-        found: Matrix | None = self.answer["kernel"]
-        hidden: Matrix = self.answer["hidden"]
-        return hidden if found is None else found
+        found = self.answer["kernel"]
+        return self.answer["hidden"] if found is None else found
 
     @cached_property
     def gramian_determinant(self) -> Scalar | None:
@@ -347,9 +373,7 @@ class TimeVaryingObservability(Result):
         columns = [[basis[i, j] for i in range(basis.shape[0])] for j in range(basis.shape[1])]
         found: dict[str, Any] = {"stack": list(answer["stack"]), "matrix": answer["matrix"]}
         found |= {"rank": answer["rank"], "kernel": columns}
-        for name in ("transition_matrix", "gramian"):
-            if answer[name] is not None:
-                found[name] = answer[name]
+        found |= named_found({"transition_matrix": answer["transition_matrix"], "gramian": answer["gramian"]})
         if self.gramian_determinant is not None:
             found["determinant"] = self.gramian_determinant
         if self.asked_for.output is not None:
@@ -374,7 +398,7 @@ def _without_common_factors(V: Matrix, free: tuple[int, ...], ideal: Ideal | Non
     return V if has_functions(plain.common_denominator()) else plain
 
 
-def _has_value(Phi: Matrix, start: Scalar) -> bool:
+def _has_value(Phi: Matrix | Scalar, start: Scalar) -> bool:
     """Return whether Φ has a value at the start: it has none where A has a pole there."""
     try:
         substitute(Phi, {START: start})

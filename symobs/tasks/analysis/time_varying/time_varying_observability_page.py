@@ -76,7 +76,7 @@ def _dummy(page: Builder) -> str:
 
 def _transition(page: Builder, result: TimeVaryingObservability) -> None:
     """Say how Φ is found, and check it."""
-    Phi: Matrix | None = result.answer["transition_matrix"]
+    Phi = result.answer["transition_matrix"]
     try:
         found = transition(page.plant.matrices.A, page.plant.symbols.signs)
     except OpenIntegral as error:
@@ -165,7 +165,7 @@ def _squares(result: TimeVaryingObservability) -> tuple[Matrix, ...]:
 def _gramian(page: Builder, result: TimeVaryingObservability) -> None:
     """Give W with its determinant, and the initial states in its kernel."""
     asked, answer = result.asked_for, result.answer
-    if answer["gramian"] is None:
+    if answer["gramian"] is None or answer["gramian_in_time"] is None:
         seen = _seen(page, result)
         (product,), order = _squares(result), page.plant.order
         places = [(i, j) for i in range(order) for j in range(order)]
@@ -286,7 +286,7 @@ def _hidden(page: Builder, result: TimeVaryingObservability) -> None:
 
 
 def _case(page: Builder, case: Case, *, modulo: bool = False) -> Step:
-    if case.result is None:
+    if not isinstance(case.result, TimeVaryingObservability):
         return undecided(page, case)
     deficient = case.result.answer["rank"] < page.plant.order
     steps: list[Step] = []
@@ -377,16 +377,16 @@ def _initial_state(page: Builder, result: TimeVaryingObservability) -> None:
         page.define("xi", "y_t", say="xi_same")
     else:
         page.define("u_t", _signal(page, asked.input), say="input_given")
-        _forced(page, result)
+        _forced(page, result, answer["forced"])
         xi = page["y_t - C x_u"]
         page.define("xi", page["y_t - C x_u - D u_t"] if m.has_feedthrough else xi, say="xi_forced")
     if answer["x0"] is None:
         if answer["rank"] < page.plant.order:
             page.conclude("x0_not_unique")
-        elif answer["candidate"] is None:
+        elif answer["candidate"] is None or answer["moment"] is None:
             page.remark("x0_open")
         else:
-            _refuse(page, result)
+            _refuse(page, result, answer["moment"])
         return
     seen = _seen(page, result)
     moment = antiderivative_since(tidied((seen.T @ page["xi"]).value), asked.start)
@@ -403,11 +403,10 @@ def _initial_state(page: Builder, result: TimeVaryingObservability) -> None:
     page.verified("x0_checked", output=relation(output, page["y_t"]))
 
 
-def _refuse(page: Builder, result: TimeVaryingObservability) -> None:
+def _refuse(page: Builder, result: TimeVaryingObservability, moment: Matrix) -> None:
     """Give the only state that could explain the output, and what its own output leaves."""
-    asked, answer = result.asked_for, result.answer
-    Phi = page["Phi"].at(START, asked.start)
-    whole = integral(page, page("{value} C.T xi", value=Phi.T), TIME, asked.start, asked.end, answer["moment"])
+    asked, Phi = result.asked_for, page["Phi"].at(START, result.asked_for.start)
+    whole = integral(page, page("{value} C.T xi", value=Phi.T), TIME, asked.start, asked.end, moment)
     page.define("x_0", page["W^-1"] @ whole, say="x0_candidate")
     rest = page("xi - {seen} x_0", seen=_seen(page, result))
     shown = rest.value[0, 0] if isinstance(rest.value, Matrix) and rest.value.shape == (1, 1) else rest.value
@@ -419,9 +418,9 @@ def _signal(page: Builder, value: Matrix) -> Term:
     return page.value(value[0, 0] if value.shape == (1, 1) else value)
 
 
-def _forced(page: Builder, result: TimeVaryingObservability) -> None:
+def _forced(page: Builder, result: TimeVaryingObservability, forced: Matrix) -> None:
     """Give the state that the input alone leads to, as the integral to the present time, and check it."""
-    start, forced = result.asked_for.start, result.answer["forced"]
+    start = result.asked_for.start
     name = _dummy(page)
     new, t = Scalar.symbol(name), Scalar.symbol(TIME)
     moved = page["Phi"].at(START, new)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import pairwise, product
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypedDict
 
 from symobs.exact import Matrix, Scalar, independent_rows, kernel, rank
 from symobs.exact.core.generators import derivative, function_named, identities, substitute, symbols_in
@@ -170,10 +170,36 @@ def has_functions(value: Matrix | Scalar) -> bool:
     return any(function_named(name) for name in value.names)
 
 
-def closed_form(plant: StateSpace, asked: TimeVaryingRequest, test: Mapping[str, Any]) -> dict[str, Any]:
+class StateOfOutput(TypedDict):
+    """The forced part of the state, x₀, the state whose output is another one, and ∫ Φᵀ Cᵀ ξ."""
+
+    forced: Matrix | None
+    x0: Matrix | None
+    candidate: Matrix | None
+    moment: Matrix | None
+
+
+class ClosedForms(StateOfOutput):
+    """Φ, the states that are never seen, the Gramian, also as a function of its end; None where there is no closed form."""
+
+    transition_matrix: Matrix | None
+    kernel: Matrix | None
+    gramian: Matrix | None
+    gramian_in_time: Matrix | None
+
+
+def closed_form(plant: StateSpace, asked: TimeVaryingRequest, stack: Matrix, hidden: Matrix) -> ClosedForms:
     """Return Φ with what follows from it and the rank test, None for each that has no closed form here."""
-    names = ("transition_matrix", "kernel", "gramian", "gramian_in_time", "forced", "x0", "candidate", "moment")
-    answer: dict[str, Any] = dict.fromkeys(names)
+    answer: ClosedForms = {
+        "transition_matrix": None,
+        "kernel": None,
+        "gramian": None,
+        "gramian_in_time": None,
+        "forced": None,
+        "x0": None,
+        "candidate": None,
+        "moment": None,
+    }
     try:
         found = transition(plant.matrices.A, plant.symbols.signs)
     except OpenIntegral:
@@ -183,9 +209,9 @@ def closed_form(plant: StateSpace, asked: TimeVaryingRequest, test: Mapping[str,
     try:
         Phi = substitute(found.matrix, {START: asked.start})
         seen = tidied(plant.matrices.C @ Phi)
-        kernel_at_start = _moving_kernel(test["hidden"], asked) if has_functions(seen) else _constant_kernel(seen)
+        kernel_at_start = _moving_kernel(hidden, asked) if has_functions(seen) else _constant_kernel(seen)
     except ZeroDivisionError:  # the interval begins or ends where A has a pole
-        return answer | {"transition_matrix": found.matrix}
+        return {**answer, "transition_matrix": found.matrix}
     if kernel_at_start is None:
         return answer
     answer |= {"transition_matrix": found.matrix, "kernel": kernel_at_start}
@@ -193,7 +219,7 @@ def closed_form(plant: StateSpace, asked: TimeVaryingRequest, test: Mapping[str,
     answer["gramian"] = None if G is None else tidied(substitute(G, {TIME: asked.end}))
     if asked.output is not None:
         back = substitute(found.matrix, {TIME: asked.start, START: Scalar.symbol(TIME)})
-        answer |= _initial_state(plant, asked, (Phi, back, seen), answer["gramian"], test["matrix"])
+        answer = {**answer, **_initial_state(plant, asked, (Phi, back, seen), answer["gramian"], stack)}
     return answer
 
 
@@ -226,7 +252,7 @@ def _initial_state(
     motion: tuple[Matrix, Matrix, Matrix],
     gramian: Matrix | None,
     stack: Matrix,
-) -> dict[str, Matrix | None]:
+) -> StateOfOutput:
     """Return the forced part f of the state and x₀ = W⁻¹ ∫ Φᵀ Cᵀ ξ with ξ = y − C f − D u; where y is not its output, why.
 
     With functions in it the quotient would not reduce: there x₀ follows from the derivatives of ξ at the start.
@@ -240,20 +266,21 @@ def _initial_state(
         driven = antiderivative_since(tidied(back @ m.B @ asked.input), asked.start)
         forced = None if driven is None else tidied(Phi @ driven)
         xi = None if forced is None else xi - m.C @ forced - m.D @ asked.input
+    found: StateOfOutput = {"forced": forced, "x0": None, "candidate": None, "moment": None}
     if xi is None or gramian is None or gramian.determinant().is_zero:
-        return {"forced": forced}
+        return found
     xi = tidied(xi)
     moment = antiderivative_since(tidied(seen.T @ xi), asked.start)
     if moment is None:
-        return {"forced": forced}
+        return found
     if has_functions(seen) or has_functions(xi):
         state = _from_derivatives(xi, stack, asked)
         explained = state is not None and tidied(seen @ state - xi).is_zero
-        return {"forced": forced, "x0": state, "moment": moment} if explained else {"forced": forced}
+        return {**found, "x0": state, "moment": moment} if explained else found
     x0 = gramian.solve(substitute(moment, {TIME: asked.end})).normal()
     if (seen @ x0 - xi).is_zero:
-        return {"forced": forced, "x0": x0}
-    return {"forced": forced, "candidate": x0, "moment": moment}
+        return {**found, "x0": x0}
+    return {**found, "candidate": x0, "moment": moment}
 
 
 def _from_derivatives(xi: Matrix, stack: Matrix, asked: TimeVaryingRequest) -> Matrix | None:

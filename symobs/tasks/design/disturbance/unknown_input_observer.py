@@ -8,7 +8,7 @@ which are eigenvalues of F whatever H and L are: C v = 0 and A v = s v + E w mak
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypedDict
 
 from symobs.exact import Matrix, Scalar, independent_rows, kernel, modulo, roots_of
 from symobs.exact.linear_algebra.transfer_function import Realisation
@@ -39,6 +39,7 @@ from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.design.unassignable import say_unassignable
 from symobs.tasks.result import Case, Result, equality, holds, method, page_of, task
 from symobs.tasks.result import choose as choose_method
+from symobs.tasks.result.answers import named_found
 from symobs.tasks.result.control_systems import Controller, observer_of
 
 if TYPE_CHECKING:
@@ -51,8 +52,25 @@ if TYPE_CHECKING:
     from symobs.tasks.analysis.strata.strata import Place
 
 
-#: The matrices of the observer.
-_MATRICES = ("H", "T", "L", "F", "B_u", "B_y")
+class UnknownInputMatrices(TypedDict):
+    """The matrices of the observer."""
+
+    H: Matrix | None
+    T: Matrix | None
+    L: Matrix | None
+    F: Matrix | None
+    B_u: Matrix | None
+    B_y: Matrix | None
+
+
+class UnknownInputAnswer(UnknownInputMatrices):
+    """Also φ, and w with C E w = 0 and E w ≠ 0 where there is no H."""
+
+    polynomial: Scalar
+    w: Matrix | None
+
+
+_NONE: UnknownInputMatrices = {"H": None, "T": None, "L": None, "F": None, "B_u": None, "B_y": None}
 
 
 @dataclass
@@ -62,6 +80,7 @@ class UnknownInputObserver(Result):
     `inner` is the gain L for the pair (C, T A), with its own claims; None where there is no H, and C E w = 0 with E w ≠ 0.
     """
 
+    answer: UnknownInputAnswer
     desired: DesiredPolynomial
     disturbance_input: Matrix
     inner: ObserverDesign | None
@@ -86,8 +105,8 @@ class UnknownInputObserver(Result):
         """Return the observer, or the negative result."""
         H = decoupling(plant, E)
         if H is None:
-            answer = dict.fromkeys(_MATRICES) | {"polynomial": desired.polynomial, "w": unseen_input(plant, E)}
-            return cls(plant, method_name, answer, desired, E, None)
+            w = unseen_input(plant, E)
+            return cls(plant, method_name, {**_NONE, "polynomial": desired.polynomial, "w": w}, desired, E, None)
         inner = design_of(ObserverDesign, decoupled(plant, H), desired)
         return cls.assembled(plant, E, H, inner, desired, method_name)
 
@@ -104,8 +123,7 @@ class UnknownInputObserver(Result):
         """Return the observer with a gain for (C, T A)."""
         m, L = plant.matrices, inner.answer["L"]
         T = (Matrix.identity(plant.order) - H @ m.C).normal()
-        answer: dict[str, Any] = dict.fromkeys(_MATRICES)
-        answer |= {"H": H, "T": T, "polynomial": desired.polynomial, "w": None}
+        answer: UnknownInputAnswer = {**_NONE, "H": H, "T": T, "polynomial": desired.polynomial, "w": None}
         if L is not None:
             F = (inner.plant.matrices.A - L @ m.C).normal()
             B_y = (L + F @ H).normal()
@@ -123,8 +141,10 @@ class UnknownInputObserver(Result):
         return self.with_gain(self.inner.with_answer("L", value), self.desired)
 
     def with_gain(self, inner: ObserverDesign, desired: DesiredPolynomial) -> Self:
-        """Return the observer with another gain for (C, T A), which places the roots of a polynomial."""
+        """Return the observer, where there is one, with another gain for (C, T A), which places the roots of a polynomial."""
         E, H = self.disturbance_input, self.answer["H"]
+        if H is None:
+            return self
         return type(self).assembled(self.plant, E, H, inner, desired, self.method).in_place_of(self)
 
     def following_from(self, gains: Mapping[str, Matrix]) -> Self:
@@ -149,10 +169,10 @@ class UnknownInputObserver(Result):
         """Yield that z follows T x whatever u and d are, and where the poles are; or that E d is not seen in the output."""
         plant, answer, inner = self.plant, self.answer, self.inner
         m = plant.matrices
-        is_whole = all((answer[name] is None) == (answer["L"] is None) for name in ("F", "B_y"))
+        is_whole = all((part is None) == (answer["L"] is None) for part in (answer["F"], answer["B_y"]))
         has_gain = inner is not None and inner.answer["L"] is not None
         if (
-            any((answer[name] is None) != (inner is None) for name in "HT")
+            any((part is None) != (inner is None) for part in (answer["H"], answer["T"]))
             or (answer["w"] is None) != (inner is not None)
             or (answer["L"] is None) == has_gain
             or not is_whole
@@ -160,7 +180,7 @@ class UnknownInputObserver(Result):
         ):
             raise CertificateRejected("there is an observer exactly where there are H and a gain of the pair (C, T A)")
         values = letters_of(plant) | {"E_d": self.disturbance_input, "phi": answer["polynomial"]}
-        known = {name: value for name, value in answer.items() if value is not None}
+        known = {name: value for name, value in answer.items() if isinstance(value, (Matrix, Scalar))}
         e = Environment(variable=plant.variable, values=values | known)
         A, C = e["A"], e["C"]
         yield holds(e, "phi = {polynomial}", "the polynomial is the one asked for", polynomial=self.desired.polynomial)
@@ -234,10 +254,11 @@ class UnknownInputObserver(Result):
             with_disturbance(self.plant, self.disturbance_input),
             independent_columns(self.disturbance_input, self.plant.ideal),
         )
-        if self.inner is None:  # E d would have to be seen, or to vanish
+        H = self.answer["H"]
+        if self.inner is None or H is None:  # E d would have to be seen, or to vanish
             return common_places(whole, _numerators(maximal_minors(E)))
         beside = places_beside(self, self.inner)
-        if self.answer["H"].common_denominator().is_constant:
+        if H.common_denominator().is_constant:
             return beside
         minors = _numerators(maximal_minors((self.plant.matrices.C @ E).normal()))
         return tuple({place.when: place for place in (*common_places(whole, minors), *beside)}.values())
@@ -245,20 +266,20 @@ class UnknownInputObserver(Result):
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """The matrices of the observer, whether there is an H, and what the gain for (C, T A) reports."""
-        own = {name: self.answer[name] for name in _MATRICES} | {"solvable": self.inner is not None}
+        own = {name: part for name, part in self.answer.items() if name in _NONE} | {"solvable": self.inner is not None}
         own["polynomial"] = self.answer["polynomial"]
         return own | (dict(self.inner.report) if self.inner is not None else {})
 
     @property
     def systems(self) -> Mapping[str, Realisation]:
         """The plant, and the observer (u, y) → x̂ with the state z."""
-        m, known = self.plant.matrices, self.answer
-        if known["L"] is None:
+        m, F, B_u = self.plant.matrices, self.answer["F"], self.answer["B_u"]
+        driven, shown = self.answer["B_y"], self.answer["H"]
+        if F is None or driven is None or shown is None:
             return super().systems
-        driven, shown = known["B_y"], known["H"]
-        if m.has_input:
-            driven, shown = Matrix.block([[known["B_u"], driven]]), Matrix.block([[-(shown @ m.D), shown]])
-        own = Realisation(known["F"], driven.normal(), Matrix.identity(self.plant.order), shown.normal())
+        if B_u is not None:
+            driven, shown = Matrix.block([[B_u, driven]]), Matrix.block([[-(shown @ m.D), shown]])
+        own = Realisation(F, driven.normal(), Matrix.identity(self.plant.order), shown.normal())
         return {**super().systems, "observer": own}
 
     @property
@@ -361,33 +382,34 @@ def _case(page: Builder, design: UnknownInputObserver) -> None:
     """Write the design on a stratum: whether d can be decoupled, the zeros, and a gain; the rest is made as in general."""
     page.set("E_d", design.disturbance_input)
     page.set("phi_o", design.desired.polynomial)
-    if design.inner is None:
+    H, L = design.answer["H"], design.answer["L"]
+    if H is None:
         _not_decoupled(page, design)
         return
     conditions = [c.expression for c in design.holds_where if c.kind != "domain"]
     if conditions:
         page.assume("uio_provided", *conditions)
-    _H, C, _identity = page.set("H_d", design.answer["H"]), page["C"], page.identity(page.plant.order)
+    _H, C, _identity = page.set("H_d", H), page["C"], page.identity(page.plant.order)
     page.conclude_silently("(H_d C - I) E_d = 0")
     page.define("T_d", "I - H_d C", silent=True)
     page.define("A_T", "T_d A", silent=True)
     _zeros(page, design)
-    if design.answer["L"] is not None:
-        L = define_gain(page, "L", design.answer["L"])
-        page.define("F_d", page["A_T"] - L @ C, silent=True)
+    if L is not None:
+        gain = define_gain(page, "L", L)
+        page.define("F_d", page["A_T"] - gain @ C, silent=True)
         page.conclude_silently(page.line("det(s I - F_d) = {polynomial}", polynomial=design.desired.polynomial))
 
 
 def _design(page: Builder, design: UnknownInputObserver) -> None:
     """Write the rank of C E, H and T, the zeros and the gain; or the reason why there is no observer."""
-    E = _independent(page, design)
-    if design.inner is None:
+    E, H, L = _independent(page, design), design.answer["H"], design.answer["L"]
+    if H is None:
         _not_decoupled(page, design)
         return
-    _decoupled(page, design, E)
+    _decoupled(page, design, E, H)
     _zeros(page, design)
-    if design.answer["L"] is not None:
-        _gain(page, design)
+    if L is not None:
+        _gain(page, design, L)
 
 
 def _independent(page: Builder, design: UnknownInputObserver) -> Term:
@@ -401,10 +423,10 @@ def _independent(page: Builder, design: UnknownInputObserver) -> Term:
 
 def _not_decoupled(page: Builder, design: UnknownInputObserver) -> None:
     """Write that E w is not seen in the output, so that no H has H C E = E."""
-    C, E, along = page["C"], page["E_d"], ""
+    C, E, along, found = page["C"], page["E_d"], "", design.answer["w"]
     unseen, direction = C @ E, E
-    if design.disturbance_input.shape[1] > 1:
-        w = page.set("w_0", design.answer["w"])
+    if found is not None and found.shape[0] > 1:
+        w = page.set("w_0", found)
         page.equal("w_0 = #", say="uio_direction")
         C, E = page["C"], page["E_d"]
         unseen, direction, along = C @ E @ w, E @ w, "_along"
@@ -413,9 +435,9 @@ def _not_decoupled(page: Builder, design: UnknownInputObserver) -> None:
     page.conclude(f"uio_not_decoupled{along}", unseen=relation(unseen, zero), nonzero=differs)
 
 
-def _decoupled(page: Builder, design: UnknownInputObserver, E: Term) -> None:
+def _decoupled(page: Builder, design: UnknownInputObserver, E: Term, H: Matrix) -> None:
     """Write the rank of C E, a solution H of H C E = E, T = I − H C and T A."""
-    C, H = page["C"], design.answer["H"]
+    C = page["C"]
     conditions = [c.expression for c in design.holds_where if c.kind != "domain"]
     if H.is_zero:
         page.define("H_d", page.value(H), say="uio_nothing", closing=False, answer=True)
@@ -462,15 +484,15 @@ def _zeros(page: Builder, design: UnknownInputObserver) -> None:
         page.remark("uio_zeros_unstable", predicate("unstable", fixed))
 
 
-def _gain(page: Builder, design: UnknownInputObserver) -> None:
+def _gain(page: Builder, design: UnknownInputObserver, found: Matrix) -> None:
     """Write L, F = T A − L C, and what multiplies y in the equation of z."""
     assert design.inner is not None  # noqa: S101 - there is a gain
     whole = page["A_T"], page["C"]
     terms, say = small_gain_terms(page, design.inner, OBSERVER, *whole)
     if not terms and design.inner.pair.is_observable and page.plant.outputs > 1:
-        found = write_structured(page, OBSERVER, design.answer["L"], *whole, page["phi_o"], lambda L: page.set("L", L))
-        say = "gain_follows" if found else say
-    L = define_gain(page, "L", *terms, design.answer["L"], say=say or "uio_gain")
+        is_written = write_structured(page, OBSERVER, found, *whole, page["phi_o"], lambda L: page.set("L", L))
+        say = "gain_follows" if is_written else say
+    L = define_gain(page, "L", *terms, found, say=say or "uio_gain")
     compare_with_simple(page, design.inner, OBSERVER, *whole)
     state = page("A_T - {L} C", L=L)
     driven = L + state @ page["H_d"]
@@ -478,7 +500,9 @@ def _gain(page: Builder, design: UnknownInputObserver) -> None:
     shown = [[] if is_short else [letters_apart_from_data(page, part.value)] for part in (state, driven)]
     page.define("F_d", state, *shown[0], say="uio_state_matrix", closing=False)
     page.define("L_y", "L + F_d H_d", *shown[1], closing=False)
-    page.conclude_silently(*(relation(page[name], design.answer[of]) for name, of in _LETTERS.items()))
+    answer = design.answer
+    shown_as = {"H_d": answer["H"], "T_d": answer["T"], "L": found, "F_d": answer["F"], "L_y": answer["B_y"]}
+    page.conclude_silently(*(relation(page[name], part) for name, part in named_found(shown_as).items()))
     pencil, asked = page["det(pencil(F_d))"], design.desired
     say_as_required(page, asked, pencil, page.value(asked.polynomial))
     caution_poles(page, asked, "phi_o", "observer")
@@ -488,10 +512,6 @@ def _gain(page: Builder, design: UnknownInputObserver) -> None:
         page.remark("uio_family")
 
 
-#: The letters of the page and the answers that they are.
-_LETTERS = {"H_d": "H", "T_d": "T", "L": "L", "F_d": "F", "L_y": "B_y"}
-
-
 def _observer(page: Builder, design: UnknownInputObserver) -> None:
     """Write the observer, and that its error does not depend on u and d."""
     m, name = page.plant.matrices, "w_o" if page.plant.is_discrete else "z_o"
@@ -499,7 +519,7 @@ def _observer(page: Builder, design: UnknownInputObserver) -> None:
     F, B_y, y = (page[letter] for letter in ("F_d", "L_y", "y"))
     pairs = [(F, z)]
     known = y
-    if m.has_input:
+    if design.answer["B_u"] is not None:
         driven = page["T_d B - L_y D"] if m.has_feedthrough else page["T_d B"]
         pairs.append((driven, page["u"]))
         known = page["y - D u"] if m.has_feedthrough else y

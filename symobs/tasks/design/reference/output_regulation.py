@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self, TypedDict
 
 from symobs.exact import (
     EIGENVALUE,
@@ -51,6 +51,7 @@ from symobs.tasks.design.gain.gain_page import write_gain
 from symobs.tasks.design.pole_cautions import caution_poles
 from symobs.tasks.result import Case, Result, holds, method, page_of, poles_of, task
 from symobs.tasks.result import choose as choose_method
+from symobs.tasks.result.answers import named_found
 from symobs.tasks.result.control_systems import Controller
 
 if TYPE_CHECKING:
@@ -90,6 +91,28 @@ class Exogenous(NamedTuple):
 _LETTERS = {"S_w": "S", "Q_r": "Q", "E_d": "E"}
 
 
+class RegulatorSolution(TypedDict):
+    """Π and Γ that solve the regulator equations, or U and V that show that there are none."""
+
+    Pi: Matrix | None
+    Gamma: Matrix | None
+    U: Matrix | None
+    V: Matrix | None
+
+
+class RegulatorLaw(TypedDict):
+    """K, and F = Γ + KΠ."""
+
+    K: Matrix | None
+    F: Matrix | None
+
+
+class RegulationAnswer(RegulatorSolution, RegulatorLaw):
+    """The factors of χ_S at whose roots rows of [A − λI, B; C, D] are dependent, each with such a row; None: not known."""
+
+    blocked: tuple[tuple[Scalar, Matrix], ...] | None
+
+
 @dataclass
 class OutputRegulation(Result):
     """Π and Γ that solve the regulator equations and K, or why there are none; with an observer of (x, w) where asked for.
@@ -97,6 +120,7 @@ class OutputRegulation(Result):
     `loop` is the state feedback and `estimator` the observer, each with its own claims.
     """
 
+    answer: RegulationAnswer
     exogenous: Exogenous
     loop: KnownState
     estimator: DisturbanceObserver | None
@@ -115,10 +139,9 @@ class OutputRegulation(Result):
         cls, exogenous: Exogenous, loop: KnownState, estimator: DisturbanceObserver | None, method_name: str
     ) -> Self:
         """Return the regulator, or the negative result."""
-        plant, q = loop.plant, exogenous.order
-        answer = solution(plant, exogenous, {})
-        answer["blocked"] = _blocked(plant, exogenous.S)
-        return cls(plant, method_name, answer | _law(loop, answer, q), exogenous, loop, estimator)
+        plant, found = loop.plant, solution(loop.plant, exogenous, {})
+        law, blocked = _law(loop, found), _blocked(plant, exogenous.S)
+        return cls(plant, method_name, {**found, "blocked": blocked, **law}, exogenous, loop, estimator)
 
     def has_one_value(self, name: str) -> bool:
         """Whether Π and Γ are unique: no more inputs than outputs, and no eigenvalue of S is a zero of the plant."""
@@ -129,16 +152,18 @@ class OutputRegulation(Result):
         """Return the regulator with another K or L, or another Π (Γ) and the Γ (Π) that belongs to it."""
         if name in self.gains and isinstance(value, Matrix):
             return self.with_gains({name: value})
-        if name not in {"Pi", "Gamma"} or not isinstance(value, Matrix):
+        sought = {"Pi": self.answer["Pi"], "Gamma": self.answer["Gamma"]}
+        if name not in sought or not isinstance(value, Matrix):
             return super().with_answer(name, value)
-        own = self.answer[name]
+        own = sought[name]
         if own is None or value.shape != own.shape:
             message = f"{name} is {value.shape[0]}×{value.shape[1]}"
             raise CertificateRejected(message, repair="give one of the shape of the answer")
         found = solution(self.plant, self.exogenous, {name: value})
-        other = {key: part for key in ("Pi", "Gamma") if (part := found[key]) is not None}
-        answer = {**self.answer, name: value, **other}
-        answer |= _law(self.loop, answer, self.exogenous.order)
+        if found["Pi"] is None:
+            return super().with_answer(name, value)
+        answer: RegulationAnswer = {**self.answer, "Pi": found["Pi"], "Gamma": found["Gamma"]}
+        answer = {**answer, **_law(self.loop, answer)}
         return type(self)(self.plant, self.method, answer, self.exogenous, self.loop, self.estimator).in_place_of(self)
 
     def with_gains(self, gains: Mapping[str, Matrix]) -> Self:
@@ -178,7 +203,7 @@ class OutputRegulation(Result):
         return {"Gamma": Gamma, **({"F": (Gamma + K @ Pi).normal()} if own else {})}
 
     def _with(self, loop: KnownState, estimator: DisturbanceObserver | None) -> Self:
-        answer = {**self.answer, **_law(loop, self.answer, self.exogenous.order)}
+        answer: RegulationAnswer = {**self.answer, **_law(loop, self.answer)}
         return type(self)(self.plant, self.method, answer, self.exogenous, loop, estimator).in_place_of(self)
 
     def _parts(self, L: Matrix) -> dict[str, Matrix]:
@@ -193,7 +218,7 @@ class OutputRegulation(Result):
     def claims(self) -> Iterator[Claim]:
         """Yield the regulator equations, or that they have no solution; F; and where the plant has blocking zeros."""
         answer, plant = self.answer, self.plant
-        Pi, U, K, F = (answer[name] for name in ("Pi", "U", "K", "F"))
+        Pi, U, K, F = answer["Pi"], answer["U"], answer["K"], answer["F"]
         if (
             (Pi is None) != (answer["Gamma"] is None)
             or (Pi is None) != (U is not None and answer["V"] is not None)
@@ -209,7 +234,7 @@ class OutputRegulation(Result):
         if U is not None:
             yield holds(e, "U*A + V*C = S*U")
             yield holds(e, "U*B + V*D = 0")
-            yield holds(e, "{trace} !== 0", trace=self.obstacle)
+            yield holds(e, "{trace} !== 0", trace=None if self.refutation is None else self.refutation[-1])
         else:
             yield holds(e, "A*Pi + B*Gamma + E = Pi*S")
             yield holds(e, "C*Pi + D*Gamma = Q")
@@ -218,10 +243,10 @@ class OutputRegulation(Result):
         yield from _blocking_claims(plant, self.exogenous.S, answer["blocked"])
 
     @property
-    def obstacle(self) -> Scalar:
-        """Tr UE − tr VQ, which would be 0 if the regulator equations had a solution."""
-        _, Q, E = self.exogenous
-        return trace(self.answer["U"], E) - trace(self.answer["V"], Q)
+    def refutation(self) -> tuple[Matrix, Matrix, Scalar] | None:
+        """U, V, and tr UE − tr VQ, which would be 0 if the regulator equations had a solution."""
+        (_, Q, E), U, V = self.exogenous, self.answer["U"], self.answer["V"]
+        return None if U is None or V is None else (U, V, trace(U, E) - trace(V, Q))
 
     @property
     def has_law(self) -> bool:
@@ -280,7 +305,7 @@ class OutputRegulation(Result):
 
     def _is_blocked_alike(self, case: Case) -> bool:
         """Return whether the same eigenvalues are zeros of the plant in a case, as far as that is known."""
-        if case.result is None:
+        if not isinstance(case.result, OutputRegulation):
             return True
         own, there = (result.answer["blocked"] for result in (self, case.result))
         return own is not None and there is not None and [f for f, _ in own] == [f for f, _ in there]
@@ -289,8 +314,8 @@ class OutputRegulation(Result):
     def _places(self) -> tuple[Place, ...]:
         further = () if self.estimator is None else places_beside(self, self.estimator.inner)
         found = (*self.loop.gain_places, *further)
-        if self.answer["U"] is not None:
-            obstacle = self.obstacle.numerator
+        if self.refutation is not None:
+            obstacle = self.refutation[-1].numerator
             return found if obstacle.is_constant else (*found, *common_places(self.plant, [obstacle]))
         known = {condition.expression for condition in self.loop.holds_where}
         own = [c.expression for c in super().holds_where if c.kind == "claim" and c.expression not in known]
@@ -299,14 +324,15 @@ class OutputRegulation(Result):
     @cached_property
     def fields(self) -> Mapping[str, Any]:
         """Π, Γ, K, F = Γ + KΠ, whether the equations have a solution, and the eigenvalues of S that are zeros of the plant."""
-        found: dict[str, Any] = {name: self.answer[name] for name in ("Pi", "Gamma", "K", "F")}
-        found["solvable"] = self.answer["Pi"] is not None
+        answer = self.answer
+        found: dict[str, Any] = {"Pi": answer["Pi"], "Gamma": answer["Gamma"], "K": answer["K"], "F": answer["F"]}
+        found["solvable"] = answer["Pi"] is not None
         found["blocked_modes"] = self._blocked_roots
         found["fixed_modes"] = self.loop.unmoved_modes
         if self.estimator is not None:
             inner = self.estimator.inner
             found |= {"L": inner.answer["L"], "fixed_modes": (*found["fixed_modes"], *inner.unmoved_modes)}
-        closed = self.closed_loop if self.has_law else None
+        closed = self.closed_loop
         polynomial = None
         if closed is not None:
             polynomial = self.loop.feedback.answer["polynomial"]
@@ -323,10 +349,12 @@ class OutputRegulation(Result):
         return tuple(root for factor, _ in blocked for root in roots_of(factor, self.plant.variable))
 
     @property
-    def closed_loop(self) -> Matrix:
-        """A − BK, with an observer [A − BK, B [K, −F]; 0, Â − LĈ] in (x − Πw, e, e_w)."""
+    def closed_loop(self) -> Matrix | None:
+        """A − BK, with an observer [A − BK, B [K, −F]; 0, Â − LĈ] in (x − Πw, e, e_w); None where there is no law."""
         m, K, F = self.plant.matrices, self.answer["K"], self.answer["F"]
-        own: Matrix = (m.A - m.B @ K).normal()
+        if K is None or F is None or not self.has_law:
+            return None
+        own = (m.A - m.B @ K).normal()
         if self.estimator is None:
             return own
         error = self.estimator.inner.fields["A"]
@@ -357,9 +385,10 @@ class EstimatedOutputRegulation(OutputRegulation):
     @property
     def controller(self) -> Controller | None:
         """Y → u = −K x̂ + F ŵ."""
-        if not self.has_law:
+        K, F = self.answer["K"], self.answer["F"]
+        if K is None or F is None or not self.has_law:
             return None
-        inner, law = self.estimator.inner, Matrix.block([[-self.answer["K"], self.answer["F"]]])
+        inner, law = self.estimator.inner, Matrix.block([[-K, F]])
         found = inner.fields
         own = Realisation(
             (found["A"] + found["B_u"] @ law).normal(),
@@ -376,15 +405,13 @@ def trace(left: Matrix, right: Matrix) -> Scalar:
     return (Matrix.row(left.T.entries) @ Matrix.column(right.entries))[0, 0]
 
 
-def _law(loop: KnownState, answer: Mapping[str, Any], order: int) -> dict[str, Any]:
+def _law(loop: KnownState, answer: RegulatorSolution) -> RegulatorLaw:
     """Return K, and F = Γ + KΠ where there is a law."""
     K, Pi, Gamma = loop.answer["K"], answer["Pi"], answer["Gamma"]
-    has_law = K is not None and Pi is not None
-    assert not has_law or Pi.shape[1] == order  # noqa: S101 - as read
-    return {"K": K, "F": (Gamma + K @ Pi).normal() if has_law else None}
+    return {"K": K, "F": None if K is None or Pi is None or Gamma is None else (Gamma + K @ Pi).normal()}
 
 
-def solution(plant: StateSpace, exogenous: Exogenous, known: Mapping[str, Matrix]) -> dict[str, Any]:
+def solution(plant: StateSpace, exogenous: Exogenous, known: Mapping[str, Matrix]) -> RegulatorSolution:
     """Return Π and Γ, some of them known, that solve the regulator equations, or else U and V."""
     m, (S, Q, E) = plant.matrices, exogenous
     n, q = plant.order, exogenous.order
@@ -404,18 +431,17 @@ def solution(plant: StateSpace, exogenous: Exogenous, known: Mapping[str, Matrix
     ]
     right = Matrix.column([*E.entries, *Q.entries]) - moved(known)
     found, row = solve_or_refute(Matrix.block([units]), right.normal(), plant.ideal)
-    answer: dict[str, Any] = dict.fromkeys(("Pi", "Gamma", "U", "V"))
     if found is None:
         assert row is not None  # noqa: S101 - where there is no solution there is a row
         entries, size = row.entries, n * q
-        answer["U"] = Matrix.of([entries[i * q : i * q + q] for i in range(n)], q).T
-        answer["V"] = -Matrix.of([entries[size + i * q : size + i * q + q] for i in range(plant.outputs)], q).T
-        return answer
-    values = list(modulo(found.normal(), plant.ideal).entries)
+        U = Matrix.of([entries[i * q : i * q + q] for i in range(n)], q).T
+        V = -Matrix.of([entries[size + i * q : size + i * q + q] for i in range(plant.outputs)], q).T
+        return {"Pi": None, "Gamma": None, "U": U, "V": V}
+    values, parts = list(modulo(found.normal(), plant.ideal).entries), dict(known)
     for name, (rows, _) in shapes.items():
-        answer[name] = Matrix.of([values[i * q : i * q + q] for i in range(rows)], q)
+        parts[name] = Matrix.of([values[i * q : i * q + q] for i in range(rows)], q)
         values = values[rows * q :]
-    return answer
+    return {"Pi": parts["Pi"], "Gamma": parts["Gamma"], "U": None, "V": None}
 
 
 def _pencil(plant: StateSpace, factor: Scalar) -> tuple[Matrix, tuple[Scalar, ...]]:
@@ -610,7 +636,7 @@ def _case(page: Builder, design: OutputRegulation) -> None:
         if page.defines(name) or name != "E_d":
             page.set(name, getattr(design.exogenous, of))
     _solution(page, design)
-    if design.answer["F"] is not None:
+    if design.answer["F"] is not None and design.answer["K"] is not None:
         page.set("K", design.answer["K"])
         page.define("F_w", "Gamma_w + K Pi_w", say="regulation_gain")
     if design.estimator is not None:
@@ -639,36 +665,37 @@ def _exosystem(page: Builder, design: OutputRegulation) -> None:
 
 def _solution(page: Builder, design: OutputRegulation) -> None:
     """Write the regulator equations and their solution, or what shows that there is none."""
-    m, answer = page.plant.matrices, design.answer
-    if answer["U"] is not None:
-        _impossible(page, design)
+    m, refutation = page.plant.matrices, design.refutation
+    if refutation is not None:
+        _impossible(page, design, *refutation)
         return
+    found = named_found({"Pi_w": design.answer["Pi"], "Gamma_w": design.answer["Gamma"]})
     known = {condition.expression for condition in design.domain}
-    below = [answer[name].common_denominator() for name in ("Pi", "Gamma")]
+    below = [part.common_denominator() for part in found.values()]
     factors = [f for f in vanishing_factors(below, page.plant.symbols.signs) if f not in known]
     if factors:
         page.assume("regulation_provided", *factors)
-    page.set("Pi_w", answer["Pi"])
-    page.set("Gamma_w", answer["Gamma"])
+    for name, part in found.items():
+        page.set(name, part)
     page.equal("Pi_w = #", "Gamma_w = #", say="regulation_solution", answer=True)
     E, D = " + E_d" if design.exogenous.disturbs else "", " + D Gamma_w" if m.has_feedthrough else ""
     state, output = page.line(f"A Pi_w + B Gamma_w{E} = Pi_w S_w"), page.line(f"C Pi_w{D} = Q_r")
     page.verified("regulation_checked", state=state, output=output)
 
 
-def _impossible(page: Builder, design: OutputRegulation) -> None:
+def _impossible(page: Builder, design: OutputRegulation, U: Matrix, V: Matrix, obstacle: Scalar) -> None:
     """Write U and V, and the zeros of the plant among the eigenvalues of S."""
-    plant, answer = page.plant, design.answer
+    plant = page.plant
     n, p, q = plant.order, plant.outputs, design.exogenous.order
-    page.set("U_r", answer["U"])
-    page.set("V_r", answer["V"])
+    page.set("U_r", U)
+    page.set("V_r", V)
     page.equal("U_r = #", "V_r = #", say="regulation_obstacle")
     D = page["D"] if plant.matrices.has_feedthrough else plant.matrices.D
     annuls = page.line("[U_r, V_r] [A, B; C, {D}] = [S_w U_r, {zero}]", D=D, zero=Matrix.zeros(q, plant.inputs))
     disturbed = design.exogenous.disturbs
-    found = page.value(design.obstacle if disturbed else -design.obstacle)
+    found = page.value(obstacle if disturbed else -obstacle)
     page.conclude("regulation_impossible_E" if disturbed else "regulation_impossible", annuls=annuls, trace=found)
-    blocked = answer["blocked"]
+    blocked = design.answer["blocked"]
     if not blocked:
         return
     roots = product_of(factor for factor, _ in blocked)

@@ -111,9 +111,9 @@ def test_every_case_names_all_the_signs_it_stands_on() -> None:
 def test_what_stands_on_the_rank_or_on_decay_is_not_said_without_them() -> None:
     grows = symobs.gramian(symobs.StateSpace("[1]", C="[1]"), horizon="inf")
     assert (grows.verdict, grows.matrix) == ("no", None)
-    solved = {"matrix": Matrix.of([[Scalar.rational(-1, 2)]]), "determinant": Scalar.rational(-1, 2)}
+    solved = Scalar.rational(-1, 2)
     with pytest.raises(CertificateRejected, match="decay"):
-        replace(grows, answer={**grows.answer, **solved})
+        replace(grows, answer={**grows.answer, "matrix": Matrix.of([[solved]]), "determinant": solved})
     decays = symobs.gramian(symobs.StateSpace("[-1]", C="[1]"), horizon="inf")
     for name in ("matrix", "determinant"):
         with pytest.raises(CertificateRejected, match="missing"):
@@ -203,7 +203,7 @@ def test_a_state_that_does_not_explain_the_data_is_rejected() -> None:
     result = symobs.initial_state(symobs.StateSpace("[0 1; -1 0]", C="[1 0]"), output=sympy.sin(t))
     assert result.x0 == (0, 1)
     with pytest.raises(CertificateRejected, match=r"the claim y_0 = C\*exp_At\*x_0 does not hold"):
-        result.with_answer("x0", result.answer["x0"] * 2)
+        result.with_answer("x0", Matrix.column([Scalar.of(0), Scalar.of(2)]))
 
 
 @tabled

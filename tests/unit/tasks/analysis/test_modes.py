@@ -16,6 +16,7 @@ from symobs.stability.criteria.stability import is_beyond, is_marginal, on_bound
 from symobs.tasks.analysis.modes import modes
 from tests.kit import scalar, tabled, tables
 from tests.support.problems.strategies import Sample, plants
+from tests.support.sampling import tried
 
 numeric = plants(("dense", "hidden", "defective"))
 s = sympy.Symbol("s")
@@ -30,7 +31,7 @@ def plant_of(sample: Sample) -> Any:
 
 @pytest.mark.parametrize("missing", ["input", "output"])
 @given(numeric)
-@settings(max_examples=100)
+@settings(max_examples=tried(100))
 def test_without_input_or_output_there_are_two_parts(missing: str, sample: Sample) -> None:
     """As many states are reached (seen) as the rank of the test matrix says, and none of the others drives (shows) them."""
     plant = plant_of(sample)
@@ -70,7 +71,7 @@ def test_a_decomposition_without_output_has_its_cases_and_its_sentences() -> Non
 
 
 @given(plants(("dense", "hidden", "defective", "parametric"), largest=4))
-@settings(max_examples=30)
+@settings(max_examples=tried(30))
 def test_the_modal_form_is_similar_and_block_diagonal(sample: Sample) -> None:
     plant = plant_of(sample)
     found: Any = symobs.canonical_form(plant, kind="modal")
@@ -205,7 +206,7 @@ def test_a_mode_that_grows_on_strata_that_are_not_known_is_undecided(monkeypatch
 
 
 @given(plants(("dense", "hidden", "defective", "parametric"), largest=3))
-@settings(max_examples=50)
+@settings(max_examples=tried(50))
 def test_a_plant_in_other_coordinates_is_a_plant(sample: Sample) -> None:
     """C (sI − A)⁻¹ B is the same in all coordinates, transposed for the dual; what the coordinates need is kept."""
     plant = plant_of(sample)

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.slow
 
 
-POINTS, ON_EACH = (1_000, 25) if FULL else (300, 10)
+POINTS, ON_EACH = (1_000, 25) if FULL else (100, 5)
 Point = dict[str, Fraction]
 
 

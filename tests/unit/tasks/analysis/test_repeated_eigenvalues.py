@@ -26,6 +26,7 @@ from tests.kit import tabled, text_of
 from tests.programs.campaign.points import answer_at
 from tests.support.algebra import holds
 from tests.support.problems.strategies import unimodular
+from tests.support.sampling import tried
 
 pytestmark = pytest.mark.slow
 
@@ -105,7 +106,7 @@ POINTS = [dict(zip(NAMES, map(Fraction, pair), strict=True)) for pair in product
 
 
 @given(hidden_plants(), st.sampled_from(["pbh", "detectability", "stabilizability"]))
-@settings(max_examples=25)
+@settings(max_examples=tried(25))
 def test_what_is_told_of_a_mode_is_true_at_every_point(plant: tuple[Any, Any], task: str) -> None:
     A, C = plant
     answer = told(task, A, C)
@@ -114,7 +115,7 @@ def test_what_is_told_of_a_mode_is_true_at_every_point(plant: tuple[Any, Any], t
 
 
 @given(hidden_plants())
-@settings(max_examples=20)
+@settings(max_examples=tried(20))
 def test_the_weaker_reading_is_decided_at_every_point(plant: tuple[Any, Any]) -> None:
     """Stable in the sense of Lyapunov: no hidden eigenvalue beyond the axis, and as many eigenvectors on it as roots."""
     A, C = plant

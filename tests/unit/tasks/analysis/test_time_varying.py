@@ -75,7 +75,7 @@ def test_a_parameter_on_which_it_depends_becomes_a_case() -> None:
 
 
 @given(st.lists(st.integers(-4, 4), min_size=2, max_size=2), st.lists(st.integers(-3, 3), min_size=3, max_size=3))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15 if FULL else 6, deadline=None)
 def test_an_initial_state_is_found_again(x0: list[int], u: list[int]) -> None:
     """Simulated by SymPy's integrals for x₁' = t x₂ + u, x₂' = u, y = x₁ + u."""
     driven = u[0] + u[1] * t + u[2] * t**2

@@ -15,6 +15,7 @@ import symobs
 from tests.kit import tabled, text_of
 from tests.support.claims.claims import HOLDS, Setting, applicable
 from tests.support.problems.strategies import unimodular
+from tests.support.sampling import tried
 
 s = sympy.Symbol("s")
 POINTS = [dict(zip("ab", map(Fraction, pair), strict=True)) for pair in product((-2, -1, 0, 1), repeat=2)]
@@ -36,7 +37,7 @@ def partly_seen(draw: st.DrawFn) -> tuple[Any, Any]:
 
 @pytest.mark.slow
 @given(partly_seen(), st.sampled_from(["observer", "state_feedback"]), st.data())
-@settings(max_examples=25)
+@settings(max_examples=tried(25))
 def test_gains_are_told_at_every_point(plant: tuple[Any, Any], task: str, data: st.DataObject) -> None:
     A, C = plant
     n = A.shape[0]
