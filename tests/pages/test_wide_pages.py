@@ -150,13 +150,13 @@ def test_no_slide_begins_with_a_sign_of_a_chain_that_fits_on_one() -> None:
     letters = dict.fromkeys(["g", "l", "m", "zeta", "omega"], "positive")
     pendulum = symobs.StateSpace("[0 1; g/l 0]", "[0; 1/(m*l^2)]", symbols=letters)
     slides = symobs.state_feedback(pendulum, polynomial="s^2 + 2*zeta*omega*s + omega^2").to("beamer")
-    rows = slides.split("\n")
+    rows = str(slides).split("\n")
     begins = [before for before, row in itertools.pairwise(rows) if row.startswith(("&=", r"&\approx"))]
     assert begins
     assert all(r"\\*" in before for before in begins)
     A = "[0 1 0 0; -2 -1 1 0; 0 0 0 1; 1 0 -1 -1]"
     plant = symobs.StateSpace(A, "[0; 1; 0; 0]", "[1 0 0 0]")
-    rows = symobs.response(plant, input=1).to("beamer").split("\n")
+    rows = str(symobs.response(plant, input=1).to("beamer")).split("\n")
     tall = [i for i, row in enumerate(rows) if r"\sum" in row and row.count(r"\begin{bmatrix}") == 1]
     assert len(tall) == 4
     assert [r"\\*" in rows[i] for i in tall[:3]] == [True, False, True]

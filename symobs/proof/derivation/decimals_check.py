@@ -116,9 +116,8 @@ class _Comparison:
         for one, other in zip(exact.members, shown.members, strict=True):
             self._formula(one, other)
         rounded = [is_rounded(member) for member in shown.members]
-        held = zip(pairwise(exact.members), pairwise(rounded), strict=True)
-        near = (False, *(one == other and a != b for (one, other), (a, b) in held), False)
-        if exactly and any(one and not any(two) for one, two in zip(rounded, pairwise(near), strict=True)):
+        near = [a == b and c != d for (a, b), (c, d) in zip(pairwise(exact.members), pairwise(rounded), strict=True)]
+        if exactly and any(one and not any(two) for one, two in zip(rounded, pairwise((0, *near, 0)), strict=True)):
             reject(f"{shown}, a condition that is rounded,")
         if not is_in_order(shown):
             reject(f"{shown}, whose decimals are not in this order,")
