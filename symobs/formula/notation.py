@@ -310,6 +310,10 @@ LETTERS: dict[str, LetterForm] = {
     **{
         f"f_{k}": LetterForm(rf"f_{{\mathrm {k}}}", f"f_{k}", "images of the eigenvectors under the gain") for k in "co"
     },
+    "O_n": LetterForm(r"\mathcal O_n", "𝒪ₙ", "n rows of the observability matrix"),
+    "Ctr_n": LetterForm(r"\mathcal C_n", "𝒞ₙ", "n columns of the controllability matrix"),
+    **{f"b_{k}": LetterForm(f"b_{k}", f"b{'₀₁₂₃₄₅₆₇₈₉'[k]}", "column of the input matrix") for k in range(1, 10)},
+    **{f"c_{k}": LetterForm(f"c_{k}", f"c{'₀₁₂₃₄₅₆₇₈₉'[k]}", "row of the output matrix") for k in range(1, 10)},
     "b_c": LetterForm(r"b_{\mathrm c}", "b_c", "column of the input that is left"),
     "c_o": LetterForm(r"c_{\mathrm o}", "c_o", "row of the output that is left"),
     **{f"A_{side}0": LetterForm(rf"A_{{\mathrm {side}0}}", f"A_{side}₀", "shifted state matrix") for side in "co"},

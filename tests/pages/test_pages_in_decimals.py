@@ -31,14 +31,25 @@ from symobs.exact import Scalar, is_correctly_written, roots_of, significant
 from symobs.exact.core.generators import function
 from symobs.exact.numerals.rounded_roots import are_rounded_roots
 from symobs.exact.numerals.written_digits import rounded_roots
-from symobs.formula.tree import Letter, Literal, Negative, Numeral, Product, Quotient, Relation, RoundedRoots
+from symobs.formula.tree import (
+    HoldsExactlyWhere,
+    Letter,
+    Literal,
+    Negative,
+    Numeral,
+    Predicate,
+    Product,
+    Quotient,
+    Relation,
+    RoundedRoots,
+)
 from symobs.formula.tree.plain_text import plain, plain_relation
 from symobs.ground.errors import DerivationRejected, ProblemErrors, SymobsWarning, UsageError
 from symobs.pages.decimals.formulas import InDecimals
 from symobs.pages.decimals.steps import in_decimals
 from symobs.pages.printers.latex_printer import LatexPrinter
 from symobs.problem import validate
-from symobs.proof.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Section, Sentence
+from symobs.proof.derivation import CaseStep, Conclude, Define, Diagram, Equal, Given, Inequalities, Section, Sentence
 from symobs.proof.derivation.decimals_check import check_decimals
 from tests.kit import tabled, text_of
 
@@ -236,6 +247,37 @@ def test_a_rounded_number_in_a_comparison_is_said_to_be_one() -> None:
     for lie in (silent, other, Relation(shown.members, ("=", "<=")), Relation(shown.members, ("<=", "<="))):
         with pytest.raises(DerivationRejected):
             check_decimals(bound, lie, "s", 5)
+
+
+def test_the_ends_of_a_region_have_their_decimals_beside() -> None:
+    """s² + (0.7 − 0.3k) s + 0.11 + 0.6k is stable for −11/60 < k < 7/3, where both coefficients are positive."""
+    region = stability_region(polynomial="s^2 + (0.7 - 0.3*k)*s + 0.11 + 0.6*k", parameters=["k"])
+    assert r"\answer{-0.18333\approx-\frac{11}{60}<k<\frac{7}{3}\approx2.3333}" in region.to_latex()
+    one = stability_region(polynomial="s^2 + 0.7*s + 0.2*k - 0.3", parameters=["k"])
+    assert r"\answer{k>1.5}" in one.to_latex()
+
+
+BOUND = Literal(Scalar.symbol("k")), Literal(number("1/3"))
+NEAR = Numeral(number("1/3"), "0.33333")
+
+
+@pytest.mark.parametrize(
+    "lie",
+    [
+        Relation((BOUND[0], NEAR), (">",)),  # without the exact end
+        Relation((BOUND[0], NEAR), ("≈",)),
+        Relation((*BOUND, Numeral(number("1/3"), "0.33334")), (">", "≈")),
+        Relation((NEAR, *BOUND), ("≈", ">")),  # beside the parameter
+    ],
+)
+def test_a_bound_is_not_rounded_without_the_exact_one(lie: Relation) -> None:
+    def region(bound: Relation) -> Inequalities:
+        return Inequalities(HoldsExactlyWhere(Predicate("stable", Letter("chi")), (bound,)), None, answer=True)
+
+    exact = region(Relation(BOUND, (">",)))
+    check_decimals(exact, region(Relation((*BOUND, NEAR), (">", "≈"))), "s", 5)
+    with pytest.raises(DerivationRejected):
+        check_decimals(exact, region(lie), "s", 5)
 
 
 def test_the_sign_at_a_junction_is_that_of_the_exact_figure() -> None:

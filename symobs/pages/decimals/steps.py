@@ -33,13 +33,12 @@ from symobs.ground.errors import DerivationRejected
 from symobs.pages.decimals.formulas import InDecimals
 from symobs.proof.derivation import (
     CaseStep,
-    Conclude,
     Define,
     Diagram,
     Equal,
     Given,
+    Inequalities,
     Note,
-    Plot,
     RegionSummary,
     Section,
     Sentence,
@@ -185,9 +184,9 @@ class _Writer:
             case Diagram(name=name, labels=labels):
                 written = tuple((place, self.label(name, place, label)) for place, label in labels)
                 return self._said(replace(step, labels=written))
-            case Conclude() | Note() | Plot():
-                return self._said(step)
-        return step
+            case Inequalities(fact=fact):
+                return self._said(replace(step, fact=replace(fact, where=tuple(map(self.bounds, fact.where)))))
+        return self._said(step)
 
     def _said(self, step: Any) -> Any:
         return step if step.sentence is None else replace(step, sentence=self.sentence(step.sentence))
@@ -261,6 +260,23 @@ class _Writer:
         """Return a relation in decimals that are not rounded, itself where there are none."""
         written = (each.relation(relation) for each in (self.decimals, self.precise))
         return next((shown for shown in written if not any(map(is_rounded, shown.members))), relation)
+
+    def bounds(self, relation: Relation) -> Relation:
+        """Return the bounds of a region in decimals that are not rounded, the others with their decimals beside."""
+        shown = self.exactly(relation)
+        members, operators = list(shown.members), list(shown.operators)
+        for place in (len(members), 0):
+            end = members[place - 1 if place else 0]
+            near = self.decimals.formula(end)
+            if (
+                isinstance(end, Literal)
+                and isinstance(end.value, Scalar)
+                and end.value.is_constant
+                and is_rounded(near)
+            ):
+                members.insert(place, near)
+                operators.insert(place, "≈")
+        return Relation(tuple(members), tuple(operators))
 
     def _is_condition(self, relation: Relation) -> bool:
         """Return whether a relation is one between parameters alone, which defines no letter for one."""

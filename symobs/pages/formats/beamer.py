@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 WIDTH = 39.5
 #: A boxed answer or a matrix of more rows than this may be too high for a slide; other displays break between rows.
 _TALL, _MATRIX = 6, re.compile(r"\\begin\{bmatrix\}(.*?)\\end\{bmatrix\}", re.DOTALL)
+#: The end of a row, and the beginning of one that goes on with a sign: they stay on one slide of so many lines.
+_ROW_END, _GOES_ON, _LINES = re.compile(r"\\\\(\[3pt\])?$"), re.compile(r"&(=|\\approx|\\quad)"), 10
 #: What keeps two blocks together, a list before the second one, too.
 _KEPT, _INSET, _UNPARTED = "\n\\nopagebreak\n", r"\end{inset}", r"\csname @endparpenalty\endcsname=10000"
 #: So many references fit below what is before them; what is not broken has no room below it.
@@ -151,7 +153,21 @@ class _SlideWriter(LatexWriter):
             return ""
         written = super().block(block)
         unparted = [written.partition(r"\answer{")[2], *_MATRIX.findall(written)] if isinstance(block, Display) else []
+        written = _linked(written) if isinstance(block, Display) else written
         is_tall = any(part.count(r"\\") > _TALL for part in unparted)
         if is_tall or isinstance(block, (*_UNBROKEN, References)):
             return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
         return written
+
+
+def _linked(display: str) -> str:
+    """Return a display whose rows that begin with a sign stay on the slide of those before them, while they fit there."""
+    rows, height = display.split("\n"), 0
+    for place, row in enumerate(rows):
+        here = max([2 * ("frac" in row), *(part.count(r"\\") for part in _MATRIX.findall(row))]) + 1
+        height = height + here if _GOES_ON.match(row) else here
+        if height > here and height <= _LINES:
+            rows[place - 1] = _ROW_END.sub(r"\\\\*\1", rows[place - 1])
+        elif height > _LINES:
+            height = here
+    return "\n".join(rows)

@@ -210,7 +210,7 @@ class MarkdownWriter:
         """Return a block on one line, its mathematics as in running text."""
         return re.sub(r"\$\$ (.*?) \$\$", r"$\\displaystyle \1$", self.block(block)).replace("\n", "<br>")
 
-    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
+    def display(self, relations: Sequence[Relation], *, boxed: int = 0, end: str = ".") -> str:
         """Return a display on one line, since further lines would need the marks of the surrounding blocks."""
         rows, are_aligned = Layout(self.printer, self.printer.width, boxed=boxed, end=end).rows(relations)
         if len(rows) == 1 and not are_aligned:

@@ -57,14 +57,14 @@ class Paragraph:
 
 @dataclass
 class Display:
-    """Relations set apart from the text; boxed, the last member of the last one is an answer.
+    """Relations set apart from the text; of so many of them at the end the last members are boxed answers.
 
     `closing` is the punctuation mark that the sentence around it asks for after it; `number` is that of an equation to
     which a later sentence refers, 0 for others.
     """
 
     relations: tuple[Relation, ...]
-    boxed: bool = False
+    boxed: int = 0
     closing: str = ""
     number: int = 0
 
@@ -206,7 +206,7 @@ def with_few_boxes(blocks: Sequence[Block]) -> list[Block]:
         elif kept and isinstance(before := kept[-1], Display) and not (before.boxed or before.number):
             kept[-1] = Display((*before.relations, *block.relations))
         else:
-            kept.append(replace(block, boxed=False))
+            kept.append(replace(block, boxed=0))
     return kept
 
 

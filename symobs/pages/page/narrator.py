@@ -7,13 +7,13 @@ displays without a sentence between them on one line, what is given said once, s
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import count, groupby, zip_longest
+from itertools import count, groupby, takewhile, zip_longest
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from symobs.formula.convention import OF_REDUCED_ORDER, STANDARD
 from symobs.formula.phrases import BESIDE, CONTINUES, OPENS, RESTS_ON, ROWS, slots_of
 from symobs.formula.phrases.languages import ENGLISH, language_named
-from symobs.formula.tree import Conjunction, Evaluated, Literal, Roots
+from symobs.formula.tree import Conjunction, Evaluated, Letter, Literal, Roots, letters
 from symobs.pages.page.blocks import (
     Block,
     CaseBlock,
@@ -28,6 +28,7 @@ from symobs.pages.page.blocks import (
     PictureBlock,
     References,
     TableBlock,
+    Title,
     Verified,
     in_rows,
     with_few_boxes,
@@ -97,6 +98,9 @@ def narrate(document: Document) -> tuple[Block, ...]:
     page.emit_given(together)
     if is_final:  # the question has said what is given, and where it comes from
         page.blocks[:] = [replace(title_of(document, language), source="")]
+    elif document.is_below:
+        page.blocks[:] = [Title(document.title, "", ())]
+        page.emit_steps([each for step in together for each in _roundings(step)])
     for index, steps in enumerate(parts):
         page.time = document.derivations[index].variable, document.derivations[index].discrete
         if index in apart:
@@ -130,6 +134,12 @@ def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, 
             together += statement
             seen.update((relation.members[0], relation) for relation in relations)
     return together, apart
+
+
+def _roundings(step: Step) -> Iterator[Step]:
+    """Yield what a page of decimals says of its digits."""
+    inner = step.steps if isinstance(step, Section) else (step,)
+    yield from (each for each in inner if isinstance(each, Note) and each.sentence.key == "rounded_digits")
 
 
 def _signs_at_once(steps: Sequence[Step]) -> list[Step]:
@@ -446,13 +456,22 @@ class _PageBlocks:
         """Emit a display, appended to an unfinished display before it; a box ends a display."""
         if not relations:
             return
+        boxes = _answers(relations) if boxed else 0
         if len(relations) == 1 and self.referred.get(relations[0]) == 0:
             self.referred[relations[0]] = number = max(self.referred.values()) + 1
-            self.blocks.append(Display(relations, boxed, number=number))
+            self.blocks.append(Display(relations, boxes, number=number))
         elif self.blocks and isinstance(last := self.blocks[-1], Display) and not (last.boxed or last.number):
-            self.blocks[-1] = Display((*last.relations, *relations), boxed)
+            self.blocks[-1] = Display((*last.relations, *relations), boxes)
         else:
-            self.blocks.append(Display(relations, boxed))
+            self.blocks.append(Display(relations, boxes))
+
+
+def _answers(relations: Sequence[Relation]) -> int:
+    """Return how many relations at the end are answers: the last one, and those before it that are a letter and its value."""
+    values = (
+        isinstance(each.members[0], Letter) and not any(map(letters, each.members[1:])) for each in reversed(relations)
+    )
+    return max(sum(1 for _ in takewhile(bool, values)), 1)
 
 
 def _is_statement(step: Step) -> bool:

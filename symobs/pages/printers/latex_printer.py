@@ -84,7 +84,7 @@ class LatexPrinter(Printer[LatexBox]):
         """Return display mathematics without delimiters or line breaks, such as a label in a drawing."""
         return (self.relation(item) if isinstance(item, Relation) else self.typeset(item)).source
 
-    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
+    def display(self, relations: Sequence[Relation], *, boxed: int = 0, end: str = ".") -> str:
         """Return a display: one line, centred lines, or lines aligned at the first sign of each relation."""
         rows, are_aligned = Layout(self, self.width, boxed=boxed, end=end).rows(relations)
         if len(rows) == 1 and not are_aligned:
@@ -154,12 +154,12 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(width, level, "".join(sources), height)
 
     def between(self, left: LatexBox, right: LatexBox) -> LatexBox | None:
-        r"""Return `\cdot` before a number, a thin space beside a word."""
+        r"""Return `\cdot` before a number, a thin space beside a word and before the degree of a root."""
         if right.source[0].isdigit() or (left.source[-1].isdigit() and _NUMERIC_FRACTION.match(right.source)):
             return LatexBox(0.7, Level.PRODUCT, r"\cdot ")
         if self.running and left.width + right.width > _WIDE:
             return LatexBox(0.0, Level.PRODUCT, r"\allowbreak ")
-        is_word = left.source.startswith(_WORD) or right.source.startswith(_WORD)
+        is_word = left.source.startswith(_WORD) or right.source.startswith((_WORD, r"\sqrt["))
         return LatexBox(0.17, Level.PRODUCT, r"\,") if is_word else None
 
     def grouped(self, box: LatexBox) -> LatexBox:

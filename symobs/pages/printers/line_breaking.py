@@ -355,8 +355,8 @@ class DisplayRow(Generic[B]):
 class Layout(Generic[B]):
     """The rows of one display of width `width`."""
 
-    def __init__(self, printer: Printer[B], width: float, *, boxed: bool, end: str) -> None:
-        """Frame the last member of the last relation if `boxed`; close with the punctuation `end`."""
+    def __init__(self, printer: Printer[B], width: float, *, boxed: int, end: str) -> None:
+        """Frame the last members of so many relations at the end; close with the punctuation `end`."""
         self.printer = printer
         self.width = width
         self.boxed = boxed
@@ -374,10 +374,11 @@ class Layout(Generic[B]):
     def rows(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """Return the rows, and whether they are aligned (else each is centred)."""
         relations = [self._without_repetition(relation) for relation in relations]
-        if self.boxed and all({"=", "≈"}.isdisjoint(relation.operators) for relation in relations):
+        if self.boxed and all("=" not in each.operators and {*each.operators} != {"≈"} for each in relations):
             return self._inequalities(relations)
         last = len(relations) - 1
-        whole = [self._on_one_line(relation, is_last=index == last) for index, relation in enumerate(relations)]
+        framed = [index > last - self.boxed for index in range(len(relations))]
+        whole = [self._on_one_line(each, is_last=i == last, framed=framed[i]) for i, each in enumerate(relations)]
         packed = self._packed(whole, self.width)
         if all(row.width <= self.width for row in packed) and (len(packed) == 1 or 2 * len(packed) <= len(whole)):
             return [DisplayRow(None, row) for row in packed], False
@@ -385,7 +386,7 @@ class Layout(Generic[B]):
         margin = max((left for left in lefts if left <= _WIDEST_LEFT * self.width), default=0.0)
         rows: list[DisplayRow[B]] = []
         for index, relation in enumerate(relations):
-            rows += self._aligned(relation, margin, is_last=index == last)
+            rows += self._aligned(relation, margin, is_last=index == last, framed=framed[index])
         self.breaker.settle()
         return rows, True
 
@@ -402,9 +403,9 @@ class Layout(Generic[B]):
 
     def _inequalities(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """Return the rows of an answer that is inequalities: one frame around all of them where they fit."""
-        plain = Layout(self.printer, self.width - self._frame(), boxed=False, end="")
+        plain = Layout(self.printer, self.width - self._frame(), boxed=0, end="")
         last = len(relations) - 1
-        whole = [plain._on_one_line(relation, is_last=index == last) for index, relation in enumerate(relations)]
+        whole = [plain._on_one_line(each, is_last=i == last, framed=False) for i, each in enumerate(relations)]
         lines = self._packed(whole, plain.width)
         if all(line.width <= plain.width for line in lines):
             box = lines[0] if len(lines) == 1 else self.printer.stacked(lines)
@@ -413,19 +414,19 @@ class Layout(Generic[B]):
 
     # -- one line -------------------------------------------------------------------------------------------------
 
-    def _on_one_line(self, relation: Relation, *, is_last: bool) -> B:
+    def _on_one_line(self, relation: Relation, *, is_last: bool, framed: bool) -> B:
         printer = self.printer
         *front, last = relation.members
         boxes = [self._typeset(member) for member in front]
         answer = self._typeset(last)
-        boxes.append(printer.framed(answer) if self.boxed and is_last else answer)
+        boxes.append(printer.framed(answer) if framed else answer)
         signs = [printer.comparison(operator) for operator in relation.operators]
         parts = [boxes[0], *(part for pair in zip(signs, boxes[1:], strict=True) for part in pair)]
-        return printer.joined([*parts, *self._mark(is_last=is_last)], Level.SUM)
+        return printer.joined([*parts, *self._mark(is_last=is_last, framed=framed)], Level.SUM)
 
-    def _mark(self, *, is_last: bool) -> list[B]:
+    def _mark(self, *, is_last: bool, framed: bool) -> list[B]:
         """Return the punctuation after a relation; none after a frame."""
-        mark = ("" if self.boxed else self.end) if is_last else ","
+        mark = "" if framed else self.end if is_last else ","
         return [self.printer.punctuation(mark)] if mark else []
 
     def _packed(self, whole: Sequence[B], width: float) -> list[B]:
@@ -441,10 +442,9 @@ class Layout(Generic[B]):
 
     # -- aligned --------------------------------------------------------------------------------------------------
 
-    def _aligned(self, relation: Relation, margin: float, *, is_last: bool) -> list[DisplayRow[B]]:
+    def _aligned(self, relation: Relation, margin: float, *, is_last: bool, framed: bool) -> list[DisplayRow[B]]:
         """Return the rows of one relation, then the definitions of the entries left out."""
         printer, defined = self.printer, len(self.breaker.named)
-        framed = self.boxed and is_last
         left = self._typeset(relation.members[0])
         head = left if left.width <= _WIDEST_HEAD else None
         room = self.width - margin - printer.punctuation(",").width - (self._frame() if framed else 0.0)
@@ -460,7 +460,7 @@ class Layout(Generic[B]):
             rights, _ = self._links(links, space, head, framed=framed)
             followers = [printer.joined([indent, line], Level.SUM) for line in [*lines[1:], *rights]]
             rows = [DisplayRow(None, line) for line in [lines[0], *followers]]
-        return self._with_definitions(rows, defined, room, is_last=is_last)
+        return self._with_definitions(rows, defined, room, is_last=is_last, is_framed=framed)
 
     def _frame(self) -> float:
         """Return the width a frame adds."""
@@ -505,10 +505,9 @@ class Layout(Generic[B]):
         return [printer.joined(pair, Level.SUM) for pair in [(sign, first), *((indent, line) for line in rest)]]
 
     def _with_definitions(
-        self, rows: list[DisplayRow[B]], defined: int, room: float, *, is_last: bool
+        self, rows: list[DisplayRow[B]], defined: int, room: float, *, is_last: bool, is_framed: bool
     ) -> list[DisplayRow[B]]:
         """Add the definitions of the new names, short ones side by side, and the punctuation."""
-        is_framed = self.boxed and is_last
         mark = self.end if is_last else ","
         if defined == len(self.breaker.named):
             return [*rows[:-1], rows[-1] if is_framed else self._marked(rows[-1], mark)]

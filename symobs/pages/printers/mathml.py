@@ -125,7 +125,7 @@ class MathmlPrinter(Printer[MathmlBox]):
         """Return the elements of display mathematics on one line, such as a label in a drawing."""
         return (self.relation(item) if isinstance(item, Relation) else self.typeset(item)).source
 
-    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
+    def display(self, relations: Sequence[Relation], *, boxed: int = 0, end: str = ".") -> str:
         """Return one `math` element: a line, centred lines, or lines aligned at the first sign of each relation.
 
         `--excess` says by how much it is wider than the line where it could not be broken; print shrinks it so far.

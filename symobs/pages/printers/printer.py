@@ -112,8 +112,8 @@ class Printer(FormulaWriter[B]):
         """Return mathematics for a line of text, without delimiters."""
 
     @abstractmethod
-    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = ".") -> str:
-        """Return a whole display, lines broken where long; `boxed` marks the last member as the answer."""
+    def display(self, relations: Sequence[Relation], *, boxed: int = 0, end: str = ".") -> str:
+        """Return a whole display, lines broken where long; the last members of so many relations at the end are boxed."""
 
     # -- letters --------------------------------------------------------------------------------------------------
 
@@ -265,10 +265,16 @@ class Printer(FormulaWriter[B]):
         if function.kind == "sqrt":
             inner = function_named(next(iter(function.argument.names), "")) if is_leaf(function.argument) else None
             if inner is not None and inner.kind == "sqrt" and inner.name not in self.symbols:
-                return self.root(self.scalar(inner.argument), 4)
-            return self.root(argument)
+                return self.root(self.radicand(inner.argument), 4)
+            return self.root(self.radicand(function.argument))
         is_plain = argument.level >= Level.PRODUCT and not isinstance(formula_of(function.argument, ""), Quotient)
         return self._wave(function, argument if is_plain else self.grouped(argument))
+
+    def radicand(self, value: Scalar) -> B:
+        """Return what stands under a root: a fraction of products with a slash."""
+        written = formula_of(value, self.variable)
+        is_short = isinstance(written, Quotient) and not any(isinstance(part, Sum) for part in children(written))
+        return (self.styled(in_exponent=True) if is_short else self).scalar(value)
 
     def exponent(self, argument: Scalar) -> B:
         """Return the argument of an exponential: −s/2, whatever polynomials of s look like elsewhere."""

@@ -78,7 +78,7 @@ class TextPrinter(Printer[TextBox]):
             return self.styled(flat=True).inline(item)
         return (self.relation(item) if isinstance(item, Relation) else self.typeset(item)).line
 
-    def display(self, relations: Sequence[Relation], *, boxed: bool = False, end: str = "") -> str:
+    def display(self, relations: Sequence[Relation], *, boxed: int = 0, end: str = "") -> str:
         """Return a display, aligned at the first sign of each relation; tall rows stand apart."""
         rows, _ = Layout(self, self.width, boxed=boxed, end=end).rows(relations)
         margin = max(int(row.left.width) if row.left else 0 for row in rows)

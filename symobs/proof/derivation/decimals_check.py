@@ -2,7 +2,7 @@
 
 The exact steps have been checked before.  What is printed differs from them in nothing but numbers: every decimal is the
 correct rounding of the exact number that stands there, or that number; `≈` stands for `=` beside a rounded one and
-nowhere else.  What conditions an answer, and a value without a relation sign before it, is never rounded.
+nowhere else.  What conditions an answer is rounded beside the exact number, a value without a relation sign before it never.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
+from operator import ge, gt, le, lt, ne
 from typing import Any
 
 from symobs.exact import Matrix, Scalar, is_correctly_written
@@ -47,13 +48,7 @@ from symobs.proof.certificate.claims import UNREADABLE, verify
 from symobs.proof.derivation.facts import BUG, reject
 from symobs.proof.derivation.steps import CaseStep, Diagram, Given, Inequalities, literals
 
-_ORDER = {
-    "<": lambda left, right: left < right,
-    ">": lambda left, right: left > right,
-    "<=": lambda left, right: left <= right,
-    ">=": lambda left, right: left >= right,
-    "!=": lambda left, right: left != right,
-}
+_ORDER = {"<": lt, ">": gt, "<=": le, ">=": ge, "!=": ne}
 
 
 def check_decimals(exact: object, shown: object, variable: str, digits: int) -> None:
@@ -110,14 +105,19 @@ class _Comparison:
         """Compare chains, members perhaps once exactly and once in decimals, and every sign between members."""
         for place, sign in enumerate(shown.operators):
             first, rest = exact.members[: place + 1], exact.members[place:]
-            if sign == "≈" and shown.members[place] == first[-1] and exact.operators[place : place + 1] != ("=",):
+            if (
+                sign == "≈"
+                and first[-1] in shown.members[place : place + 2]
+                and exact.operators[place : place + 1] != ("=",)
+            ):
                 exact = Relation((*first, *rest), (*exact.operators[:place], "=", *exact.operators[place:]))
         if len(exact.members) != len(shown.members) or len(exact.operators) != len(shown.operators):
             reject(f"{shown}, a chain of another length,")
         for one, other in zip(exact.members, shown.members, strict=True):
             self._formula(one, other)
         rounded = [is_rounded(member) for member in shown.members]
-        if exactly and any(rounded):
+        near = [a == b and c != d for (a, b), (c, d) in zip(pairwise(exact.members), pairwise(rounded), strict=True)]
+        if exactly and any(one and not any(two) for one, two in zip(rounded, pairwise((0, *near, 0)), strict=True)):
             reject(f"{shown}, a condition that is rounded,")
         if not is_in_order(shown):
             reject(f"{shown}, whose decimals are not in this order,")

@@ -351,6 +351,7 @@ class Document:
     digits: int | None = field(default=None, kw_only=True)
     #: What a sheet adds to each part of a question, points in words and room for an answer; or the points of a solution.
     handout: tuple[Any, ...] = field(default=(), kw_only=True)
+    is_below: bool = field(default=False, kw_only=True)  #: below its question, which says what is given
     #: What a page of HTML offers besides its text.
     web: WebPage = field(default=PLAIN, kw_only=True)
 

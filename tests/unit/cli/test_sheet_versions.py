@@ -58,6 +58,17 @@ def sheet(folder: Path, *arguments: str, text: str = SHEET) -> Run:
     return inside("sheet", "sheet.toml", *arguments, folder=folder)
 
 
+def test_what_is_given_stands_once_in_an_exam_with_solutions(tmp_path: Path) -> None:
+    """Each solution stands below its question; solutions alone begin with the data, and so do those behind all questions."""
+    exam = SHEET.replace("drawn", "fixed")
+    both = sheet(tmp_path, "--format", "text", text=exam).out
+    assert both.count("Given\n") == 2
+    assert both.index("Given\n") < both.index("Solution 1\n") < both.rindex("Given\n") < both.index("Solution 2\n")
+    assert sheet(tmp_path, "--solutions", "--format", "text", text=exam).out.count("Given\n") == 2
+    apart = exam.replace('style = "exam"', "")
+    assert sheet(tmp_path, "--format", "text", text=apart).out.count("Given\n") == 4
+
+
 def test_each_version_has_other_numbers_in_another_order(tmp_path: Path) -> None:
     run = sheet(tmp_path, "--versions", "3", "--format", "json")
     assert run.code == 0, run.err

@@ -66,10 +66,10 @@ def test_what_is_printed_has_the_value(value: Scalar, point: tuple[object, ...])
 @pytest.mark.parametrize(
     ("typed", "text", "latex"),
     [
-        ("sqrt(q*r)/r", "√(q/r)", r"\sqrt{\frac{q}{r}}"),
-        ("-a*sqrt(k*m)/m", "-a √(k/m)", r"-a\sqrt{\frac{k}{m}}"),
+        ("sqrt(q*r)/r", "√(q/r)", r"\sqrt{q/r}"),
+        ("-a*sqrt(k*m)/m", "-a √(k/m)", r"-a\sqrt{k/m}"),
         ("(a + sqrt(q*r))/r", "(a + √(q r))/r", r"\frac{a+\sqrt{qr}}{r}"),
-        ("sqrt(q*r)/r + a", "a + √(q/r)", r"a+\sqrt{\frac{q}{r}}"),
+        ("sqrt(q*r)/r + a", "a + √(q/r)", r"a+\sqrt{q/r}"),
         ("3*sqrt(b)/b", "3/√b", r"\frac{3}{\sqrt{b}}"),
         ("sqrt(b)/2", "√b/2", r"\frac{\sqrt{b}}{2}"),
         ("sqrt(a^2 + q)/a", "√(a² + q)/a", r"\frac{\sqrt{a^2+q}}{a}"),

@@ -9,9 +9,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from symobs.formula.tree.term import block
 from symobs.ground.dataclass import dataclass
-from symobs.tasks.analysis.rank.rank_page import given_here, rank_cases, square_test
+from symobs.tasks.analysis.rank.rank_page import given_here, rank_cases, write_test
 from symobs.tasks.analysis.rank.rank_test import RankResult, listed, power_rows, rank_answer
 from symobs.tasks.result import Result, choose, method, task
 
@@ -66,10 +65,7 @@ class Observability(RankResult):
         """Build 𝒪 block by block and read off the rank."""
         given_here(page, self)
         with page.section("observability"):
-            rows, C, A = [[page["C"]]], page["C"], page["A"]
-            rows += [[C @ A**k] for k in range(1, self.plant.order)]
-            page.define("O", block(rows), say="observability_matrix")
-            square_test(page, "O", self, "observability")
+            write_test(page, "O", self, "observability")
             rank_cases(page, "O", self, "observability")
 
 
@@ -113,10 +109,7 @@ class Controllability(RankResult):
         """Build 𝒞 block by block and read off the rank."""
         given_here(page, self)
         with page.section("controllability"):
-            columns, B, A = [page["B"]], page["B"], page["A"]
-            columns += [A**k @ B for k in range(1, self.plant.order)]
-            page.define("Ctr", block([columns]), say="controllability_matrix")
-            square_test(page, "Ctr", self, "controllability")
+            write_test(page, "Ctr", self, "controllability")
             rank_cases(page, "Ctr", self, "controllability")
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, cast
 
 from symobs.exact import Matrix, roots_of, unit_rows
 from symobs.formula.phrases.languages import StateChoice
 from symobs.formula.tree import Conjunction, Roots
 from symobs.formula.tree.term import block
+from symobs.formula.tree.written import stacked
 from symobs.proof.derivation import CaseStep, Conclude, Equal, Step
 from symobs.proof.derivation.builder import Builder, differs, relation, sentence, shows
 from symobs.proof.derivation.wording_check import relation_fits
@@ -27,10 +29,15 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from symobs.exact import Scalar
+    from symobs.formula.tree.term import Term
     from symobs.tasks.analysis.rank.rank_test import RankResult
     from symobs.tasks.result import Case, Result
 
 
+#: Up to this order the test matrix of several outputs (inputs) in numbers is written whole, as books do.
+WHOLE_UP_TO = 3
+#: So many sets of rows are tried, of so many outputs (inputs).
+_TRIED, _MOST_ROWS = 60, 9
 #: More sets of states are not named in one sentence.
 NAMED_SETS = 6
 
@@ -41,6 +48,60 @@ def given_here(page: Builder, result: RankResult) -> None:
     if result.piece is not None:
         page.where(*result.piece.relations(c.expression for c in result.domain))
     given(page, where=where)
+
+
+def write_test(page: Builder, letter: str, result: RankResult, kind: str) -> bool:
+    """Define 𝒪 or 𝒞 block by block and say its rank; return whether it is known to be full for all parameters.
+
+    Of several outputs (inputs) n independent rows (columns) are enough where the rank is full.
+    """
+    (row, of), order = (("C", "A") if kind == "observability" else ("B", "A")), page.plant.order
+    across = kind == "controllability"
+    whole = stacked(row, of, order, across=across)
+    chosen = _enough(result)
+    if not chosen:
+        page.define(letter, whole, say=f"{kind}_matrix")
+        return square_test(page, letter, result, kind)
+    page.set(letter, page[whole].value)
+    first = _chosen_rows(page, result, chosen, row, across=across)
+    page.define(f"{letter}_n", first, say=f"some_rows_{kind}")
+    determinant = page[f"det({letter}_n)"]
+    page.equal(relation(determinant, determinant_form(page, determinant.scalar), "!=", 0))
+    page.conclude(f"independent_{kind}")
+    return True
+
+
+def _chosen_rows(page: Builder, result: RankResult, chosen: Sequence[int], row: str, *, across: bool) -> Term:
+    """Return [C; CA; …] where whole blocks are chosen, else single rows [c₁; c₂; c₁A; …]; B, b₁ and columns across."""
+    width = result.answer["matrix"].shape[0] // page.plant.order
+    powers = sorted({index // width for index in chosen})
+    if len(chosen) == len(powers) * width:
+        parts = [(page[row], power) for power in powers]
+    else:
+        values = page[row].value.T if across else page[row].value
+        used = sorted({index % width for index in chosen})
+        lines = {index: values.select([index], range(values.shape[1])) for index in used}
+        letters = {i: page.set(f"{row.lower()}_{i + 1}", line.T if across else line) for i, line in lines.items()}
+        parts = [(letters[index % width], index // width) for index in chosen]
+    A = page["A"]
+    terms = [part if not power else A**power @ part if across else part @ A**power for part, power in parts]
+    return block([terms] if across else [[term] for term in terms])
+
+
+def _enough(result: RankResult) -> tuple[int, ...]:
+    """Return n rows of the test matrix that are independent for all parameters; none where the whole matrix is shown."""
+    matrix, order = result.answer["matrix"], result.plant.order
+    is_short = order <= WHOLE_UP_TO and not matrix.names
+    is_needed = order < matrix.shape[0] <= _MOST_ROWS * order and not is_short and result.piece is None
+    if not is_needed or result.verdict != "yes" or result.is_too_long:
+        return ()
+    rows = [index for index, row in enumerate(matrix.rows) if any(row)]
+    first = (tuple(result.answer["rows"]), *itertools.islice(itertools.combinations(rows, order), _TRIED))
+    for chosen in sorted(first, key=lambda rows: rows[-1]):
+        determinant = matrix.select(chosen, range(order)).determinant()
+        if determinant and not vanishing_factors([determinant], result.plant.symbols.signs):
+            return chosen
+    return ()
 
 
 def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> bool:

@@ -24,7 +24,7 @@ PHRASES: dict[str, str] = {
     "general_gain": "The general gain is",
     "dimension_observer": "The gains that place these poles form a family of dimension {count}, with the free entries of $G_o$ as parameters. Excluded are gains whose closed-loop matrix is not cyclic, and nongeneric ones for which that row cannot be fixed.",
     "dimension_state_feedback": "The gains that place these poles form a family of dimension {count}, with the free entries of $G_c$ as parameters. Excluded are gains whose closed-loop matrix is not cyclic, and nongeneric ones for which that row cannot be fixed.",
-    "structured_gain": "We look for a gain of the following form; beside it stands the closed-loop matrix:",
+    "structured_gain": "We look for a gain of the following form:",
     "structured_wish": "The desired polynomial is the product",
     "equal_factors": "Equating the coefficients factor by factor gives",
     "others_observer": "Other gains place the same poles: they form a family of dimension {count}.",

@@ -6,10 +6,9 @@ from dataclasses import replace
 from math import prod
 from typing import TYPE_CHECKING
 
-from symobs.exact import Factored, Matrix, Scalar, factored, from_coefficients, rank, root_of_pole, roots_of
+from symobs.exact import Factored, Matrix, Scalar, factored, from_coefficients, root_of_pole, roots_of
 from symobs.exact.core.generators import all_roots
 from symobs.formula.tree import Evaluated, Literal, Roots
-from symobs.formula.tree.written import stacked
 from symobs.proof.derivation import CaseStep
 from symobs.proof.derivation.builder import Builder, predicate, relation
 from symobs.proof.derivation.facts import PREDICATES
@@ -27,7 +26,7 @@ from symobs.tasks.analysis.page_parts import (
     stratum_of,
     undecided,
 )
-from symobs.tasks.analysis.rank.rank_page import outside_cases, square_test
+from symobs.tasks.analysis.rank.rank_page import outside_cases, write_test
 from symobs.tasks.design import readability
 from symobs.tasks.design.gain.gain_design import OBSERVER, GainDesign, PlacementProblem
 from symobs.tasks.design.gain.gain_family_page import (
@@ -56,12 +55,9 @@ from symobs.tasks.result import choose
 if TYPE_CHECKING:
     from symobs.exact.core.generators import Function
     from symobs.formula.tree.term import Term
-    from symobs.tasks.analysis.rank.rank_test import RankResult
     from symobs.tasks.result import Case
 
 
-#: Up to this order the test matrix of several outputs (inputs) is written whole, as books do.
-_WHOLE_UP_TO = 3
 #: The degree of the factor of a conjugate pair.
 _PAIR = 2
 
@@ -140,35 +136,12 @@ def _roots_found(design: GainDesign, side: PlacementProblem) -> frozenset[Functi
     return all_roots(design.answer[side.gain]) - all_roots(m.A, m.B, m.C, *desired)
 
 
-def write_test(page: Builder, side: PlacementProblem, test: RankResult) -> bool:
-    """Define 𝒪 or 𝒞 block by block and say its rank; return whether it is known to be full.
-
-    Of a larger pair in numbers with several outputs (inputs) the first blocks are enough where their rank is full.
-    """
-    order, (row, across) = page.plant.order, ("C", False) if side.is_dual else ("B", True)
-    whole = stacked(row, "A", order, across=across)
-    several = page.plant.outputs if side.is_dual else page.plant.inputs
-    if several > 1 and order > _WHOLE_UP_TO and test.verdict == "yes" and not page[whole].value.names:
-        first = next(
-            part
-            for k in range(1, order + 1)
-            if rank((part := page(stacked(row, "A", k, across=across))).value) == order
-        )
-        if first.value.shape != page[whole].value.shape:
-            page.set(side.matrix, page[whole].value)
-            page.equal(relation(first, first.as_value), say=f"first_blocks_{side.test}")
-            page.conclude(f"first_rank_{side.test}", rank=relation(first.apply("rank"), order))
-            return True
-    page.define(side.matrix, whole, say=f"{side.test}_matrix")
-    return square_test(page, side.matrix, test, side.test)
-
-
 def _test(page: Builder, design: GainDesign, side: PlacementProblem, style: str) -> None:
     if side.gain == "K" and style == "canonical_form" and is_canonical(page):
         say_canonical(page)
         return
     if not page.defines(side.matrix):
-        is_known = write_test(page, side, design.test)
+        is_known = write_test(page, side.matrix, design.test, side.test)
     else:
         is_known = meets_obligations(f"assignable_{side.kind}", SentenceContext((), page.environment))
     if is_known and design.fixed_polynomial.is_one and design.answer[side.gain] is not None:

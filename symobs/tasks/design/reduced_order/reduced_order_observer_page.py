@@ -13,14 +13,14 @@ from symobs.stability.criteria.stability import stability
 from symobs.system.conditions import vanishing_factors
 from symobs.tasks.analysis.page_parts import case_steps, formula_of_factored, given, in_blocks
 from symobs.tasks.analysis.rank.observability import Observability
-from symobs.tasks.analysis.rank.rank_page import rank_cases
+from symobs.tasks.analysis.rank.rank_page import rank_cases, write_test
 from symobs.tasks.design import readability
 from symobs.tasks.design.block_diagrams import draw_minimal_order
 from symobs.tasks.design.components import combination, summed
 from symobs.tasks.design.error_plots import plot_error
 from symobs.tasks.design.full_order.observer import undetermined
 from symobs.tasks.design.gain.gain_design import OBSERVER
-from symobs.tasks.design.gain.gain_page import say_as_required, write_test
+from symobs.tasks.design.gain.gain_page import say_as_required
 from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
 from symobs.tasks.design.gain.structured_gain_page import is_held, write_structured
 from symobs.tasks.design.named_gains import define_gain, gain_letters
@@ -92,7 +92,7 @@ def write_observer_of_rest(page: Builder, design: ReducedOrderObserver) -> None:
         return
     with page.section("observability"):
         test = Observability.of(page.plant, "rank")
-        write_test(page, OBSERVER, test)
+        write_test(page, OBSERVER.matrix, test, OBSERVER.test)
         rank_cases(page, "O", test, "observability")
     with page.section("reduced_order_observer"):
         _coordinates(page, design)

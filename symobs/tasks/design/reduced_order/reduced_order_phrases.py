@@ -29,7 +29,7 @@ PHRASES: dict[str, str] = {
     "with_unknown_gain": "With unknown entries of $L$, its characteristic polynomial is",
     "wanted_polynomial": "which is to be equal to the desired polynomial",
     "polynomial_is_to_be": "Its desired characteristic polynomial is",
-    "form_of_several": "With several outputs the gain is not unique. We look for one of the following form; beside it stands the matrix of the error equation:",
+    "form_of_several": "With several outputs the gain is not unique. We look for one of the following form:",
     "one_of_several": "With several outputs the gain is not unique. One with simple entries is",
     "compare": "Equating coefficients gives",
     "hence_gain": "hence",

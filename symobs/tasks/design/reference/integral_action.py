@@ -443,8 +443,7 @@ def _gains(page: Builder, design: IntegralAction) -> None:
     both = _both(page, gain)
     page.equal(relation(both, *terms, gain), say=say or ("hence_gain" if compared else "integral_gains"))
     compare_with_simple(page, design.loop, FEEDBACK, *whole)
-    page.equal("K = #", say="integral_parts", answer=True)
-    page.equal("k_I = #", answer=True)
+    page.equal("K = #", "k_I = #", say="integral_parts", answer=True)
     page.verified(
         "as_required",
         check=page.line("det(pencil(A_hat) + B_hat [K, -k_I]) = {polynomial}", polynomial=design.desired.polynomial),
