@@ -87,7 +87,10 @@ def test_a_card_shows_the_value_of_its_field(path: Path) -> None:
                 continue
             environment = Environment(variable=result.plant.variable)
             shown = evaluate(card.shown.members[-1], environment, Exact(environment))
-            assert shown == value_of(card.answer), (result.task, card.name)
+            value = value_of(card.answer)
+            pairs = zip(shown.entries, value.entries, strict=True) if isinstance(value, Matrix) else [(shown, value)]
+            for one, other in pairs:  # roots of letters are spelled anew: √(q/r) for √(qr)/r
+                assert one == other or number(one) == pytest.approx(number(other)), (result.task, card.name)
         for card in cards(result, result.fields):
             assert_read_back(result, card)
         printer = CardPrinter(result, problem.convention)

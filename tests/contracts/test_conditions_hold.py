@@ -96,6 +96,7 @@ BUILT = {
 WITH_ROOTS = {
     "coupled_masses_irrational",
     "inverted_pendulum_integral_action",
+    "magnetic_levitation",
     "sensor_at_a_node",
     "servo_with_irrational_poles",
 }

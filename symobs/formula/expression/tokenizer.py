@@ -10,6 +10,7 @@ import re
 import unicodedata
 from dataclasses import replace
 from functools import cached_property
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from symobs.exact import Complex, Field, Scalar
@@ -88,6 +89,12 @@ def _term_backwards(tokens: Sequence[Token], end: int) -> Iterator[int]:
             yield place
 
 
+def _closing(text: str, place: int) -> int:
+    """Return the place of the parenthesis that closes the one at a place, the end of the text where there is none."""
+    depths = accumulate((character == "(") - (character == ")") for character in text[place:])
+    return next((place + k for k, depth in enumerate(depths) if not depth), len(text))
+
+
 MOST_NESTING = 100
 #: After this many names that are not declared a text is read no further.
 _MOST_UNKNOWN = 20
@@ -102,7 +109,7 @@ TOKENS = (
     rf"|(?P<NAME>{PRINTED_NAME})"
     rf"|(?P<POWER>\*\*|\^)|(?P<MULTIPLY>[*/·⋅×])|(?P<ADD>[+{re.escape(MINUS)}])"
     r"|(?P<OPEN>[(\[{])|(?P<CLOSE>[)\]}])|(?P<COMMA>,)|(?P<END>;)|(?P<UNIT>[°%])"
-    rf"|(?P<RAISED>⁻?[{SUPERSCRIPTS}]+)|(?P<ROOT>√(?P<RADICAND>[0-9]+|{PRINTED_NAME})?)"
+    rf"|(?P<ROOT>(?:(?<![\w)\]])⁴)?√(?P<RADICAND>[0-9]+|{PRINTED_NAME})?)|(?P<RAISED>⁻?[{SUPERSCRIPTS}]+)"
     rf"|(?P<SPACE>[ \t\r\n{BLANK}]+)"
 )
 
@@ -249,7 +256,7 @@ class Tokeniser:
             case "RAISED":
                 self._raised(ascii_of(text), at)
             case "ROOT":
-                self._root(text[1:], at)
+                self._root(text, at)
             case "COMMA" | "END" if self.open and not self._in_brackets():
                 raise self.source.error(f'"{text}" stands inside parentheses', at, 'close them with ")" first')
             case "COMMA":
@@ -403,15 +410,28 @@ class Tokeniser:
             self._add("ADD", "-", at)
         self._add("VALUE", power, at, self._decimal(power.lstrip("-"), at))
 
-    def _root(self, radicand: str, at: int) -> None:
-        """Add the root of a number, of a name, or of what stands in the parentheses that follow."""
+    def _root(self, text: str, at: int) -> None:
+        """Add the root, or the fourth root, of a number, of a name, or of what stands in the parentheses that follow."""
+        index, _, radicand = text.partition("√")
+        begin = at + len(index) + 1
+        if index:
+            self._add("FUNCTION", "sqrt", at)
+            self._add("_OPEN", "(", at)
         self._add("FUNCTION", "sqrt", at)
         if radicand:
             self._add("_OPEN", "(", at)
-            self._take("NUMBER" if radicand.isdecimal() else "NAME", radicand, at + 1)
+            self._take("NUMBER" if radicand.isdecimal() else "NAME", radicand, begin)
             self._add("_CLOSE", ")", at)
-        elif not self.text.startswith("(", at + 1):
+        elif not self.text.startswith("(", begin):
             raise self.source.error("a root is followed by a number, a name or (", at, "write sqrt( )")
+        elif index:
+            end = _closing(self.text, begin)
+            if end == len(self.text):
+                raise self.source.error('this "(" is never closed', begin, 'write ")" behind the radicand')
+            self._grouped(begin + 1, end)
+            self.ahead = end + 1
+        if index:
+            self._add("_CLOSE", ")", at)
 
     def _unit_first(self, found: re.Match[str], at: int) -> None:
         """Add j2 as the number 2 j; raises ExpressionError for jw, 1/j2, j2^2, 3j2, and where j2 is a letter in use."""

@@ -13,6 +13,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from symobs.exact import Complex, Matrix, Scalar
+from symobs.exact.core.generators import substitute
 from symobs.formula.expression import (
     declared_name,
     evaluation,
@@ -476,3 +477,12 @@ def test_a_decimal_comma_is_refused_with_the_point(text: str, repair: str) -> No
         with pytest.raises(ExpressionError) as caught:
             read(text)
         assert repair in caught.value.repair
+
+
+def test_a_fourth_root_as_it_is_printed_is_one() -> None:
+    names = {"q": "positive", "x": "real"}
+    for text, plain in (("⁴√(16 q)", "2*q^(1/4)"), ("2·⁴√q", "2*q^(1/4)"), ("x⁴√4", "2*x^4"), ("⁴√16", "2")):
+        read = (parse_scalar(each, names, functions=True) for each in (text, plain))
+        assert len({substitute(value, {"q": Scalar.of(81)}) for value in read}) == 1
+    with pytest.raises(ExpressionError, match="never closed"):
+        parse_scalar("⁴√(q", names, functions=True)
