@@ -18,10 +18,10 @@ import symobs
 from symobs import StateSpace, compensator, observability, observer, state_feedback
 from symobs.exact import Matrix, Scalar
 from symobs.formula.phrases import DEMANDS, slots_of
-from symobs.formula.tree import Letter
+from symobs.formula.tree import Letter, Relation
 from symobs.ground.errors import CertificateRejected, DerivationRejected, SymobsError
 from symobs.problem import read
-from symobs.proof.derivation import Conclude, Diagram, Sentence
+from symobs.proof.derivation import CaseStep, Conclude, Diagram, Section, Sentence
 from symobs.proof.derivation.builder import Builder
 from symobs.proof.derivation.steps import everything_in
 from symobs.proof.derivation.wording_check import obligations
@@ -402,3 +402,25 @@ def test_a_page_cannot_speak_of_another_plant() -> None:
     liar.__dict__.pop("derivation")
     with pytest.raises(DerivationRejected, match="another A"):
         _ = liar.derivation
+
+
+@pytest.mark.parametrize("name", ["hoop_equilibria", "hoop_over_its_speed", "predator_and_prey"])
+@pytest.mark.parametrize("operator", ["<", ">=", "!=", "="])
+def test_the_case_of_an_equilibrium_is_where_it_is_real_and_has_its_signs(name: str, operator: str) -> None:
+    (result,) = results_of(name)
+
+    def turned(steps: tuple[Any, ...]) -> tuple[Any, ...]:
+        for place, step in enumerate(steps):
+            if isinstance(step, CaseStep) and isinstance(step.when, Relation):
+                return (
+                    *steps[:place],
+                    replace(step, when=replace(step.when, operators=(operator,))),
+                    *steps[place + 1 :],
+                )
+            if isinstance(step, Section) and (inside := turned(step.steps)) != step.steps:
+                return (*steps[:place], replace(step, steps=inside), *steps[place + 1 :])
+        return steps
+
+    result.derivation.check()
+    with pytest.raises(DerivationRejected):
+        replace(result.derivation, steps=turned(result.derivation.steps)).check()
