@@ -23,7 +23,9 @@ _QUOTIENT = re.compile(r"\\[dtc]?frac\s*(?:\{([^{}]*)\}|(\d))\s*(?:\{([^{}]*)\}|
 _LONGEST = 20_000
 #: Groups of LaTeX within each other.
 _DEEPEST = 20
-_ROOT = re.compile(r"\\sqrt\s*\{([^{}]*)\}")
+_ROOT = re.compile(r"\\sqrt\s{0,9}(?:\[\s{0,9}(\d)\s{0,9}\])?\s{0,9}\{([^{}]*)\}")
+#: Square and fourth roots; a name does not begin another entry of a row.
+_ROOTS = {None: " sqrt({})", "2": " sqrt({})", "4": " sqrt(sqrt({}))"}
 _ABOVE, _BELOW = re.compile(r"\^\s*\{([^{}]*)\}"), re.compile(r"_\s*\{([^{}]*)\}")
 _SIGNS = {
     "pm": "±",
@@ -53,7 +55,7 @@ def without_latex(text: str) -> str:
         before = text
         text = _SET.sub(lambda f: f[1] if f[1] is not None else f[2], text)
         text = _QUOTIENT.sub(lambda f: f"(({f[1] or f[2]})/({f[3] or f[4]}))", text)
-        text = _ROOT.sub(r" sqrt(\1)", text)
+        text = _ROOT.sub(lambda f: _ROOTS.get(f[1], f" ({{}})^(1/{f[1]})").format(f[2]), text)
         text = _ABOVE.sub(lambda f: f"^{f[1].strip()}" if f[1].strip() == "T" else f"^({f[1]})", text)
         text = _BELOW.sub(_indexed, text)
         if before == text:
