@@ -172,7 +172,8 @@ def _promising(target: Target, output: int, step: Fraction, condition: float) ->
     observability = np.concatenate(rows, axis=1)
     regular = np.linalg.cond(observability) < SOLVABLE
     numbers, gains, closed, observability = (stack[regular] for stack in (numbers, gains, closed, observability))
-    last = np.linalg.solve(observability, np.eye(order)[:, -1:])
+    right = np.broadcast_to(np.eye(order)[:, -1:], (len(observability), order, 1))  # NumPy 1 stacks vectors otherwise
+    last = np.linalg.solve(observability, right)
     column = np.zeros_like(last)
     for coefficient in target.phi:
         column = closed @ column + coefficient * last
