@@ -424,3 +424,13 @@ def test_the_case_of_an_equilibrium_is_where_it_is_real_and_has_its_signs(name: 
     result.derivation.check()
     with pytest.raises(DerivationRejected):
         replace(result.derivation, steps=turned(result.derivation.steps)).check()
+
+
+def test_a_declared_sign_is_seen_in_a_denominator() -> None:
+    """x = 1/(a + b) < 0 is one where a + b < 0: the case stays, without a warning that it failed its check."""
+    (result,) = read(
+        'task = "equilibria"\n[symbols]\na = "real"\nb = "real"\nx = "negative"\n'
+        '[plant]\nstates = ["x"]\nf = ["1 - a*x - b*x"]\nh = ["x"]\n',
+        "signs.toml",
+    ).solve()
+    assert "-a - b > 0" in result.to("text").replace("−", "-")

@@ -241,7 +241,7 @@ def is_real_point(said: SentenceContext) -> bool:
         return False
 
     def sign(number: Scalar) -> str:
-        return sign_where(number, here.signs, here.positive)
+        return sign_where(number.numerator * number.denominator, here.signs, here.positive)  # it has a value there
 
     def is_real(number: Scalar) -> bool:
         found = [f for f in map(function_named, number.names) if f is not None and f.kind in _REAL_WHERE]
