@@ -13,14 +13,22 @@ import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Lock
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 SYMOBS = (sys.executable, "-m", "symobs")
 HERE = Path(__file__).resolve().parent
 SHEETS = sorted(path.parent for path in HERE.glob("[0-9]*/sheet.toml"))
 STUDENTS = HERE / "students.csv"
+#: Of the numbers of their own: another term has others.
+TERM = 2026
 PLATFORMS = ("stack", "prairielearn", "moodle")
 #: The marked class: a problem, and the table of the answers to it.
 MARKED = (HERE / "09_compensator" / "motor.toml", HERE / "marking" / "answers.csv")
+#: The note of a question that a platform takes with all its parts.
+WHOLE = "all of it was exported\n"
 REFUSED = 3  # the exit code of an input that cannot be used, here by a platform
 
 
@@ -48,7 +56,7 @@ class Builder:
         self.out, self.workers, self.failed, self.left_out = out, workers, 0, 0
         self.lock = Lock()
 
-    def all(self, title: str, jobs: list[Job]) -> None:
+    def all(self, title: str, jobs: Sequence[Job]) -> None:
         """Run all jobs of a step that are not up to date."""
         waiting = [job for job in jobs if not job.is_done()]
         print(f"{title}: {len(waiting)} to build, {len(jobs) - len(waiting)} up to date", flush=True)
@@ -79,10 +87,10 @@ class Export(Job):
     """A question for a platform, without the parts that the platform refuses; the target is a note of what was left out."""
 
     def __init__(self, bank: Path, platform: str, name: str, source: Path, problem: Path) -> None:
-        written = bank / platform / f"{name}.xml" if platform != "prairielearn" else bank / platform
+        written = bank / platform if platform == "prairielearn" else bank / platform / "single" / f"{name}.xml"
         command = ("export", source, "--to", platform, "-o", written)
         super().__init__(bank / "notes" / platform / f"{name}.txt", [source, problem], *command)
-        self.problem = problem
+        self.platform, self.problem = platform, problem
         written.parent.mkdir(parents=True, exist_ok=True)
 
     def run(self) -> subprocess.CompletedProcess[str]:
@@ -94,9 +102,9 @@ class Export(Job):
             if left:
                 self.command += [word for part in left for word in ("--asked", part)]
                 reasons, done = done.stderr, super().run()
-                done.stderr = reasons + done.stderr
+                done.stderr = "".join(dict.fromkeys((reasons + done.stderr).splitlines(keepends=True)))
         if done.returncode in {0, REFUSED}:
-            self.target.write_text(done.stderr or "all of it was exported\n", "utf-8")
+            self.target.write_text(done.stderr or WHOLE, "utf-8")
         return done
 
     def parts(self) -> list[str]:
@@ -139,7 +147,7 @@ def variant_jobs(out: Path) -> list[Job]:
     jobs = []
     for number, folder in enumerate(SHEETS, 1):
         problem, target = folder / "own_numbers.toml", out / folder.name / "own_numbers"
-        options = ("--count", count, "--seed", number, "--assign", STUDENTS, "--workers", 1)
+        options = ("--count", count, "--seed", 100 * TERM + number, "--assign", STUDENTS, "--workers", 1)
         jobs.append(Job(target / "manifest.json", [problem, STUDENTS], "variants", problem, *options, "-o", target))
     return jobs
 
@@ -157,9 +165,9 @@ def variant_sheet_jobs(out: Path) -> list[Job]:
     return jobs
 
 
-def export_jobs(out: Path) -> list[Job]:
+def export_jobs(out: Path) -> list[Export]:
     """Return the questions of the learning platforms: every problem, and every set of variants as one question."""
-    jobs: list[Job] = []
+    jobs = []
     for platform in PLATFORMS:
         for folder in SHEETS:
             for problem in sorted(set(folder.glob("*.toml")) - {folder / "sheet.toml"}):
@@ -167,6 +175,18 @@ def export_jobs(out: Path) -> list[Job]:
                 source = out / folder.name / "own_numbers" / "manifest.json" if is_set else problem
                 asked = source.parent / "variants" / "v001.toml" if is_set else problem
                 jobs.append(Export(out / "banks", platform, f"{folder.name}_{problem.stem}", source, asked))
+    return jobs
+
+
+def bank_jobs(out: Path) -> list[Job]:
+    """Return one file for each platform that imports files: all questions that it takes whole."""
+    jobs = []
+    for platform in ("stack", "moodle"):
+        whole = [job for job in export_jobs(out) if job.platform == platform and job.target.read_text("utf-8") == WHOLE]
+        target, sources = out / "banks" / platform / "bank.xml", [job.sources[0] for job in whole]
+        jobs.append(
+            Job(target, [*sources, *(job.target for job in whole)], "export", *sources, "--to", platform, "-o", target)
+        )
     return jobs
 
 
@@ -192,7 +212,8 @@ def main() -> int:
         ("sheets", sheet_jobs),
         ("numbers of their own", variant_jobs),
         ("sheets of these", variant_sheet_jobs),
-        ("question banks", export_jobs),
+        ("questions of the platforms", export_jobs),
+        ("question banks", bank_jobs),
         ("marking", marking_jobs),
     ):
         builder.all(title, jobs(builder.out))
