@@ -191,7 +191,8 @@ def _entry(number: int, asked: SheetProblem, text: str, wanted: Wanted, report_p
 def _worked_out(entry: SheetEntry, asked: SheetProblem, text: str, wanted: Wanted, report_progress: Progress) -> Found:
     """Return the entry with its parts; if the solution fails, with the question alone."""
     data = parse(text, entry.file)
-    entry = replace(entry, title=str(data.get("title") or entry.title)[:_LONGEST_TITLE])
+    title, variant = str(data.get("title") or entry.title)[:_LONGEST_TITLE], str(data.get("variant") or "")
+    entry = replace(entry, title=title, variant=variant)
     try:
         problem = validate(data, folder=Path(entry.file).parent)
         entry = replace(entry, language=wanted.language or problem.language)

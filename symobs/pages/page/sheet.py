@@ -97,6 +97,8 @@ class SheetEntry:
     language: str = ""
     #: The letter of the version that it belongs to, where a sheet has versions.
     version: str = ""
+    #: The id of the variant that it is: each student has one.
+    variant: str = ""
 
 
 @dataclass
@@ -162,7 +164,12 @@ class Sheet:
 
     @property
     def apart(self) -> tuple[Sheet, ...]:
-        """The sheets that it consists of: itself, or the questions of each version and the key to all of them."""
+        """The sheets that it consists of: itself, or the questions of each version and the key to all of them.
+
+        An examination of variants that is handed out is one for each student.
+        """
+        if self.header.is_exam and not self.has_solutions and all(entry.variant for entry in self.entries):
+            return tuple(replace(self, entries=(entry,)) for entry in self.entries)
         versions = tuple(dict.fromkeys(entry.version for entry in self.entries))
         if len(versions) < 2:
             return (self,)

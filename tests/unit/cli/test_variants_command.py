@@ -58,6 +58,28 @@ def test_nobody_of_a_table_is_left_without_a_variant(table: str, message: str) -
 
 
 @pytest.mark.slow
+def test_each_student_gets_a_sheet_with_a_head_of_its_own_and_the_key_has_one(tmp_path: Path) -> None:
+    (tmp_path / "two.toml").write_text(FEW, "utf-8")
+    assert inside("variants", "two.toml", "--count", "2", "--workers", "1", "-o", "set", folder=tmp_path).code == 0
+    (tmp_path / "fixed.toml").write_text('task = "observability"\n[plant]\nA = "[0 1; 0 3]"\nC = "[1 0]"\n', "utf-8")
+    with_one = (tmp_path / "set" / "sheet.toml").read_text("utf-8") + '[[problem]]\nfile = "../fixed.toml"\n'
+    (tmp_path / "set" / "mixed.toml").write_text(with_one, "utf-8")
+    for sheet, options, titles, names in (
+        ("set/sheet.toml", ["--questions"], 2, 2),
+        ("set/sheet.toml", ["--solutions"], 1, 0),
+        ("set/mixed.toml", ["--questions"], 1, 1),
+    ):
+        for kind, name in (
+            ("text", "Student number:"),
+            ("latex", r"\fillin{Student number}"),
+            ("html", "Student number"),
+        ):
+            page = inside("sheet", sheet, "--title", "Own numbers", "--format", kind, *options, folder=tmp_path).out
+            told = page.partition("<body")[2] if kind == "html" else page.partition(r"\begin{document}")[2] or page
+            assert (told.count("Own numbers"), told.count(name)) == (titles, names), (sheet, options, kind)
+
+
+@pytest.mark.slow
 def test_too_few_leave_nothing_behind_and_partial_ones_what_there_is(tmp_path: Path) -> None:
     (tmp_path / "few.toml").write_text(FEW, "utf-8")
     call = ("variants", "few.toml", "--count", "5", "--workers", "1", "-o", "set")
