@@ -242,7 +242,7 @@ class Scalar:
     def names(self) -> frozenset[str]:
         """The generators that really occur; cached, since they are used often."""
         if not hasattr(self, "known_names"):
-            parts = (part for part in (self.numerator_part, self.denominator_part) if not part.is_one())
+            parts = () if self.is_constant else (self.numerator_part, self.denominator_part)
             self.known_names: frozenset[str] = frozenset().union(*(occurring(part, self.field.names) for part in parts))
         return self.known_names
 

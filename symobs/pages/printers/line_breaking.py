@@ -392,8 +392,10 @@ class Layout(Generic[B]):
 
     def _without_repetition(self, relation: Relation) -> Relation:
         """Return a relation without members that are printed as the one before them: 3 · 1 beside 3."""
-        boxes = [replace(self._typeset(member), level=Level.SUM) for member in relation.members]
         members, operators = relation.members, relation.operators
+        if len(members) == 2:
+            return relation
+        boxes = [replace(self._typeset(member), level=Level.SUM) for member in members]
         kept = [i for i in range(len(members)) if i < 2 or operators[i - 1] != "=" or boxes[i] != boxes[i - 1]]
         return replace(
             relation,

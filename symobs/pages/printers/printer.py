@@ -61,6 +61,8 @@ if TYPE_CHECKING:
     from symobs.formula.notation import LetterForm
     from symobs.formula.phrases.languages import Language
 
+#: Formulas that are kept in print from one answer to the next.
+_MOST_REMEMBERED = 4000
 _BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -88,6 +90,13 @@ class Printer(FormulaWriter[B]):
         self.known = self.memory.setdefault(self.style, {})
         #: The entries named by stars so far, numbered through the page.
         self.stars: dict[Formula, int] = {}
+
+    def remember(self, memory: dict[tuple[object, ...], dict[Scalar | Formula, B]]) -> None:
+        """Go on with what another printer of the same letters has printed; a memory that is full begins anew."""
+        if sum(map(len, memory.values())) > _MOST_REMEMBERED:
+            memory.clear()
+        self.memory = memory
+        self.known = memory.setdefault(self.style, {})
 
     def keep_time(self, time: tuple[str, bool] | None) -> None:
         """Go on with this variable, in continuous or discrete time."""
