@@ -87,7 +87,9 @@ def candidate(table: Table, seed: int, number: int) -> Candidate:
     """Return a candidate; raises `InputError` where a matrix stands within an expression."""
     draws = Draws(seed, number)
     values = {name: parameter.drawn(draws[name]) for name, parameter in table.parameters.items()}
-    data = with_values(table.base, values)
+    # What is expected beside a plant of the file's own is expected of that alone.
+    base = {key: each for key, each in table.base.items() if key != "expect" or table.like != "base"}
+    data = with_values(base, values)
     if table.construct is None:
         return _tidied(Candidate(number, data, values, {}, {}))
     made = CONSTRUCTIONS[table.construct][0](draws, table.shape)
@@ -467,6 +469,12 @@ def run(payload: Mapping[str, Any]) -> dict[str, Any]:
     if reason is not None:
         return {"status": "done", "result": {"reason": reason}}
     found = profile(results, problem.document(results).derivations)
+    wrong = mismatches(problem.viewed(results), problem.expect)
+    if wrong:
+        return {
+            "status": "done",
+            "result": {"reason": "an expected answer is not met", "unknown": _unmet(payload, wrong)},
+        }
     expect = expected(problem, results)
     unmet = mismatches(problem.viewed(results), expect)
     if unmet:
@@ -478,6 +486,16 @@ def run(payload: Mapping[str, Any]) -> dict[str, Any]:
         "profile": found,
     }
     return {"status": "done", "result": result}
+
+
+def _unmet(payload: Mapping[str, Any], wrong: Sequence[str]) -> list[tuple[str, str, str]]:
+    """Return place, message and repair of expected answers that a candidate does not meet."""
+    tables = [payload["problem"].get(name, {}) for name in ("plant", "specification")]
+    drawn = ", ".join(f"{name} = {value}" for table in tables for name, value in table.items())
+    told = (text.partition(": ") for text in wrong)
+    return [
+        (where, f"{message} for {drawn}", "mend it, in letters of [variants.parameters]") for where, _, message in told
+    ]
 
 
 def _agree(gains: Mapping[str, Any], results: Sequence[Result]) -> None:

@@ -239,7 +239,7 @@ _READERS: dict[str, Callable[[Mapping[str, Any], str, Note], list[Any] | None]] 
 
 
 #: Tables whose texts are expressions, and texts for people, where a letter stands in braces.
-_EXPRESSIONS = ("plant", "specification", "constants", "values", "marking")
+_EXPRESSIONS = ("plant", "specification", "constants", "values", "marking", "expect")
 _WORDS = ("title", "text")
 #: A relation among parameters, as [variants.parameters] lists them: both sides, and the sign between.
 RELATION = re.compile(r"^(.*?)(!=|==|>=|<=|>|<|=)(.*)$", re.DOTALL)

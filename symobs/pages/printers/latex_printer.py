@@ -486,6 +486,10 @@ _MATHEMATICS = {character: rf"\{name}" for character, name in _GREEK.items()} | 
 }
 
 
+_BELOW = zip("₀₁₂₃₄₅₆₇₈₉ₐₑₕᵢⱼₖₗₘₙₒₚᵣₛₜᵤᵥₓ", "0123456789aehijklmnoprstuvx", strict=True)
+_MATHEMATICS |= {character: f"_{name}" for character, name in _BELOW}
+
+
 _SHOWN = _SPECIAL | _TYPOGRAPHY | {character: f"${latex}$" for character, latex in _MATHEMATICS.items()}
 _ACCENTS = {"\u0302": r"\hat", "\u0303": r"\tilde", "\u0304": r"\bar", "\u0307": r"\dot", "\u0308": r"\ddot"}
 

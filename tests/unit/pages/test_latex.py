@@ -86,6 +86,7 @@ def page_with(*steps: Define | Equal | Diagram | Note, title: str = "") -> HandW
         ("state x\u0302 and ẋ of ω", r"state $\hat x$ and $\dot x$ of $\omega$"),
         ("1 − 2 – 3", "1 $-$ 2 -- 3"),
         ("a\N{NO-BREAK SPACE}[1]", "a~[1]"),
+        ("ω₀ Rₐ x₁", r"$\omega$$_0$ R$_a$ x$_1$"),
         ("漢 \ud800 \U0001f600", "? ? ?"),
         ("\u202eright to left\u200b", "right to left"),
         ("a\u0301\u0302\u0303", "?"),

@@ -28,7 +28,7 @@ _DATA = ("worked_examples", "latex_templates")
 _KINDS = {".py", ".css", ".json", ".toml", ".tex"}
 _RUNTIME = ("pyodide.mjs", "pyodide.asm.mjs", "pyodide.asm.wasm", "python_stdlib.zip", "pyodide-lock.json")
 #: What answers need: not the command line, nor what runs many problems or checks what others wrote.
-_NEEDLESS = {"cli", "batch", "checking", "export", "variants", "audit", "site", "__pycache__"}
+_NEEDLESS = {"cli", "batch", "checking", "export", "variants", "audit", "site", "course", "__pycache__"}
 #: Scripts come from here alone, and WebAssembly is compiled; nothing else is run, and nobody else is asked.
 POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; "

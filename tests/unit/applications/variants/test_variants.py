@@ -79,6 +79,41 @@ def test_variants_of_the_examples(name: str) -> None:
     assert longest <= variants[3].profile["peak"]
 
 
+LETTERS = """
+title = "A drive with time constant {c}"
+task  = "state_feedback"
+[plant]
+A = "[0 1; 0 -1/c]"
+B = "[0; 1/c]"
+[specification]
+poles = "-q, -q"
+[expect]
+K = "[c*q^2, 2*c*q - 1]"
+[variants.parameters]
+c = { set = ["1/2", "1", "2"] }
+q = { integers = [2, 9] }
+"""
+
+
+def test_what_a_file_expects_in_letters_is_held_against_every_variant() -> None:
+    """s^2 + (1 + k2)/c s + k1/c = (s + q)^2."""
+    assert len(found(LETTERS, 3)) == 3
+    with pytest.raises(ProblemErrors, match=r"expect\.K: expected .* for A = .*, poles = -") as refused:
+        list(found(LETTERS.replace("2*c*q - 1", "2*c*q + 1"), 3))
+    assert "variants.parameters" in str(refused.value)
+
+
+def test_what_is_expected_of_a_files_own_plant_is_not_expected_of_its_variants() -> None:
+    text = (
+        'task = "state_feedback"\n[plant]\nA = "[0 1 0; 0 0 1; 1 2 3]"\nB = "[0; 0; 1]"\n'
+        '[specification]\npoles = "-1, -2, -3"\n[expect]\nK = "[7 13 9]"\n'
+        '[variants]\nconstruct = "state_feedback"\ndifficulty = { like = "base", load = "90%" }\n'
+    )
+    assert len(found(text, 2)) == 2
+    with pytest.raises(ProblemErrors, match=r"expect\.K"):
+        found(text.replace("[7 13 9]", "[7 13 8]"), 2)[0]
+
+
 # -- what is distinct -------------------------------------------------------------------------------------------------
 
 
