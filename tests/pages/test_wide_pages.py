@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import symobs
+from symobs.pages.formats.beamer import linked
 from symobs.tasks.result import render
 from tests.support.examples import EXAMPLES, document_of
 
@@ -145,8 +146,8 @@ def test_a_gain_of_few_signs_is_boxed_itself() -> None:
     assert "2l² m ω ζ" in page
 
 
-def test_no_slide_begins_with_a_sign_of_a_chain_that_fits_on_one() -> None:
-    """K = [p − …] V⁻¹ and its value stay together; of four tall matrices of a sum two do, else they would leave the slide."""
+def test_no_slide_begins_with_a_sign() -> None:
+    """K = [p − …] V⁻¹ and its value stay together; a sum of four tall matrices is made smaller."""
     letters = dict.fromkeys(["g", "l", "m", "zeta", "omega"], "positive")
     pendulum = symobs.StateSpace("[0 1; g/l 0]", "[0; 1/(m*l^2)]", symbols=letters)
     slides = symobs.state_feedback(pendulum, polynomial="s^2 + 2*zeta*omega*s + omega^2").to("beamer")
@@ -159,4 +160,65 @@ def test_no_slide_begins_with_a_sign_of_a_chain_that_fits_on_one() -> None:
     rows = str(symobs.response(plant, input=1).to("beamer")).split("\n")
     tall = [i for i, row in enumerate(rows) if r"\sum" in row and row.count(r"\begin{bmatrix}") == 1]
     assert len(tall) == 4
-    assert [r"\\*" in rows[i] for i in tall[:3]] == [True, False, True]
+    begun = max(i for i in range(tall[0]) if rows[i] == r"\begin{fitted}")
+    assert r"\end{fitted}" not in rows[begun : tall[-1]]
+
+
+@pytest.mark.parametrize(("height", "lefts"), [(3, ["K", "", ""]), (5, ["K", "", "K"]), (6, ["K", "K", "K"])])
+def test_a_chain_of_several_slides_begins_again_with_its_left_side(height: int, lefts: list[str]) -> None:
+    """A slide has ten lines: three matrices of three rows, two of five, one of six."""
+    table = r"\begin{bmatrix}" + r"\\".join("1" * height) + r"\end{bmatrix}"
+    rows = (rf"{left}&={table}\\[3pt]" for left in ("K", "", ""))
+    written, is_whole = linked("\n".join([r"\begin{align*}", *rows, r"\end{align*}"]))
+    assert is_whole
+    assert [line.partition("&=")[0] for line in written.split("\n")[1:-1]] == lefts
+
+
+def test_a_tall_answer_of_a_case_is_made_smaller_too() -> None:
+    """e^{At} of a spinning top is a sum of four matrices, in the case that h is not 2; the case h = 2 has a slide, too."""
+    plant = symobs.StateSpace("[0 1 0 0; 1 0 0 -h; 0 0 0 1; 0 h 1 0]", symbols={"h": "positive"})
+    slides = str(symobs.matrix_exponential(plant).to("beamer"))
+    assert r"\answer{" in slides.partition(r"\begin{fitted}")[2].partition(r"\end{fitted}")[0]
+
+
+# -- what is used -----------------------------------------------------------------------------------------------------
+
+
+def test_a_matrix_behind_a_bar_fits_its_line() -> None:
+    """The Jacobian of a ball on a beam: its longest entry has a name, the equations behind the bar are one."""
+    page = str(render(document_of("ball_and_beam"), "latex"))
+    (jacobian,) = (line for line in page.split("\n") if r"\dot{\alpha}^2}{7}" in line and "right|" in line)
+    assert r"\ast_{1}" in jacobian
+    assert r"_{r=\alpha=\dot{r}=\dot{\alpha}=\tau=0}" in jacobian
+
+
+CARTS = symobs.StateSpace(
+    "[0 1 0 0 0 0; -1 -1 1 0 0 0; 0 0 0 1 0 0; 1 0 -2 -1 1 0; 0 0 0 0 0 1; 0 0 1 0 -1 -1]",
+    C="[1 0 -1 0 0 0; 0 0 1 0 -1 0]",
+)
+
+
+def test_an_answer_no_shows_the_blocks_that_have_the_rank() -> None:
+    """Of three carts and two distances C and CA have rank 4, that of the whole matrix; no zeros are written out."""
+    page = str(symobs.observability(CARTS).to("text"))
+    assert "Since rank[𝒪_ν; C·A²] = rank 𝒪_ν" in page
+    assert "C A³" not in page
+    assert page.count(" = 0") == 2
+    dual = str(symobs.controllability(symobs.StateSpace(CARTS.A.T, CARTS.C.T)).to("text"))
+    assert "Since rank[𝒞_ν A²·B] = rank 𝒞_ν" in dual
+
+
+def test_a_deadbeat_error_vanishes_by_an_equation() -> None:
+    plant = symobs.StateSpace("[1 1 1/2; 0 1 1; 0 0 1]", C="[1 0 0]", dt=1)
+    assert "(A - L C)³ = 0." in str(symobs.observer(plant, poles=[0, 0, 0]).to("text"))
+
+
+def test_digits_of_an_optimal_gain_follow_the_roots_of_its_polynomial() -> None:
+    """-s^6 + 28 s^4 - 100 s^2 + 1226, by Ogata's example; its roots by numpy."""
+    found = sorted(np.roots([-1, 0, 28, 0, -100, 0, 1226]), key=lambda root: root.real)
+    page = str(render(document_of("lqr_third_order"), "text"))
+    told = re.search(r"Its roots are (.*?)\. With", page.replace("\n", " "))
+    assert told
+    numbers = [float(number) for number in re.findall(r"[0-9.]+", told[1].replace("-", ""))]
+    assert np.allclose(numbers[0], found[-1].real, atol=1e-4)
+    assert np.allclose(numbers[1:3], [abs(found[1].real), abs(found[1].imag)], atol=1e-4)

@@ -355,7 +355,7 @@ def under_one_another(rows: Sequence[str], heights: Sequence[int], ruled: Sequen
     r"""Return rows joined by `\\`, with the depth that tall ones need below their strut: an array adds none by itself."""
     body = rows[0]
     for number, (row, above, below) in enumerate(zip(rows[1:], heights, heights[1:], strict=False), 1):
-        body += r"\\[12pt]" if above > 1 else r"\\[4pt]" if max(above, below) else r"\\"
+        body += rf"\\[{max(12, 3 * above)}pt]" if above > 1 else r"\\[4pt]" if max(above, below) else r"\\"
         body += (
             rf"\hline {row}\rule{{0pt}}{{2.4ex}}" if number in ruled else row
         )  # before -2 it would make a binary minus

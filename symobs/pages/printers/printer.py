@@ -143,6 +143,7 @@ class Printer(FormulaWriter[B]):
 
     def relation(self, item: Relation) -> B:
         """Print a chain of equations and comparisons."""
+        item = with_zero(item)
         parts = [self.typeset(item.members[0])]
         for operator, member in zip(item.operators, item.members[1:], strict=True):
             parts += [self.comparison(operator), self.typeset(member)]
@@ -390,11 +391,14 @@ class Printer(FormulaWriter[B]):
                 return self.called(self.letter(f"{name}_", ""), shown)
             case Letter(name) if not shows_time(name):
                 return self.called(self.letter(name, ""), [self.scalar(instant) for instant in instants.values()])
-        equations = [
-            self.joined([self.symbol(name), self.comparison("="), self.scalar(instant)], Level.SUM)
-            for name, instant in instants.items()
-        ]
-        return self.evaluated(self.at_least(Level.POWER, self.typeset(operand)), equations)
+        return self.evaluated(self.at_least(Level.POWER, self.typeset(operand)), self.equations(instants))
+
+    def equations(self, instants: Mapping[str, Scalar]) -> list[B]:
+        """Return what stands behind the bar: θ = π, ω = u = 0."""
+        shared: dict[Scalar, list[B]] = {}
+        for name, instant in instants.items():
+            shared.setdefault(instant, []).extend((self.symbol(name), self.comparison("=")))
+        return [self.joined([*names, self.scalar(instant)], Level.SUM) for instant, names in shared.items()]
 
     def called(self, function: B, arguments: Sequence[B]) -> B:
         """Return a function before its arguments in parentheses."""
@@ -411,13 +415,30 @@ class Printer(FormulaWriter[B]):
 
     def block_entry(self, formula: Formula) -> B:
         """Return a block; a zero matrix among blocks is 0."""
-        if isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value.is_zero:
+        if is_zero_table(formula):
             return self.leaf(Scalar.of(0))
         return self.typeset(formula)
 
     def at_least(self, level: Level, box: B) -> B:
         """Parenthesise a box that binds less tightly."""
         return box if box.level >= level else self.grouped(box)
+
+
+def with_zero(relation: Relation) -> Relation:
+    """Return a relation with 0 for a zero matrix, M v = 0, but where a letter is that matrix."""
+    first = relation.members[0]
+    while isinstance(first, Derivative | Transpose):
+        first = children(first)[0]
+    if isinstance(first, Letter | Literal):
+        return relation
+    zero = Literal(Scalar.of(0))
+    members = (zero if is_zero_table(member) else member for member in relation.members[1:])
+    return replace(relation, members=(relation.members[0], *members))
+
+
+def is_zero_table(formula: Formula) -> bool:
+    """Return whether a formula is a matrix of zeros."""
+    return isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value.is_zero
 
 
 def shifted(formula: Formula) -> Formula:
