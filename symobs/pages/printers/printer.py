@@ -61,6 +61,9 @@ if TYPE_CHECKING:
     from symobs.formula.notation import LetterForm
     from symobs.formula.phrases.languages import Language
 
+#: In a line of text a column of more entries is a row, transposed, and a matrix of more rows a list.
+ROWS_IN_A_LINE = 2
+
 _BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -73,6 +76,9 @@ def _with_index(latex: str, index: str) -> str:
 
 class Printer(FormulaWriter[B]):
     """Formula → mathematics of one format."""
+
+    #: Whether mathematics is printed into a line of text.
+    running = False
 
     def __init__(
         self, variable: str = "s", symbols: Mapping[str, str] | None = None, *, discrete: bool = False
@@ -411,6 +417,8 @@ class Printer(FormulaWriter[B]):
         """Return a matrix, entry by entry."""
         if 0 in matrix.shape:
             return self.empty(matrix.shape)
+        if self.running and matrix.shape[0] > ROWS_IN_A_LINE and matrix.shape[1] == 1:
+            return self.transposed(self.plain_matrix(matrix.T))
         return self.matrix([[self.scalar(entry) for entry in row] for row in matrix.rows])
 
     def block_entry(self, formula: Formula) -> B:
