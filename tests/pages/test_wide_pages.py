@@ -222,3 +222,58 @@ def test_digits_of_an_optimal_gain_follow_the_roots_of_its_polynomial() -> None:
     numbers = [float(number) for number in re.findall(r"[0-9.]+", told[1].replace("-", ""))]
     assert np.allclose(numbers[0], found[-1].real, atol=1e-4)
     assert np.allclose(numbers[1:3], [abs(found[1].real), abs(found[1].imag)], atol=1e-4)
+
+
+def test_conditions_have_no_factors_of_known_sign() -> None:
+    """omega^2 (zeta^2 - 1) < 0 is zeta < 1 where both are positive; the roots are -zeta omega ± omega √(zeta^2 - 1)."""
+    signs = dict.fromkeys(["zeta", "omega"], "positive")
+    plant = symobs.StateSpace("[0 1; -omega^2 -2*zeta*omega]", symbols=signs)
+    page = str(symobs.matrix_exponential(plant).to("text"))
+    assert [line.strip() for line in page.splitlines() if "Case" in line] == [
+        "Case ζ < 1.",
+        "Case ζ > 1.",
+        "Case ζ = 1.",
+    ]
+    assert "-ω ζ ± ω √(ζ² - 1)" in str(symobs.characteristic_polynomial(plant).to("text"))
+
+
+def test_a_gain_of_six_states_is_found_by_parts() -> None:
+    """With three entries held the polynomial of three oscillators and two outputs splits into a square and a quartic one."""
+    A = "[0 1 0 0 0 0; -2 0 1 0 0 0; 0 0 0 1 0 0; 1 0 -2 0 1 0; 0 0 0 0 0 1; 0 0 1 0 -2 0]"
+    plant = symobs.StateSpace(A, C="[1 0 0 0 0 0; 0 0 0 0 1 0]")
+    page = str(symobs.observer(plant, poles=[-2, -2, -3, -3, -4, -4]).to("text"))
+    assert "We look for a gain of the following form" in page
+    assert "Equating the coefficients factor by factor" in page
+    assert "X_o" not in page
+
+
+def test_a_sum_over_a_number_is_taken_apart() -> None:
+    """From (s + l + 1/10), not (s + (10 l + 1)/10)."""
+    plant = symobs.StateSpace("[0 1 0 0; 0 -1/5 2 0; 0 0 0 1; 0 1/10 -6 -1/10]", C="[1 0 0 0; 0 0 1 0]")
+    page = str(symobs.reduced_order_observer(plant, poles=[-4, -5]).to("text"))
+    assert "(s + l₂ + 1/10)(s + l₁ + 1/5)" in page
+
+
+@pytest.mark.parametrize("task", ["integral_action", "unknown_input_observer"])
+def test_the_check_of_a_gain_ends_with_the_desired_factors(task: str) -> None:
+    if task == "integral_action":
+        plant = symobs.StateSpace("[-2 1; 1 -3]", "[1 0; 0 2]", "[1 0; 0 1]")
+        page = str(symobs.integral_action(plant, poles=[-1, -2, -3, -4]).to("text"))
+    else:
+        page = str(render(document_of("unknown_input_observer"), "text"))
+    check = " ".join(page.partition("✓")[2].split("\n\n")[0].split())
+    assert check.endswith(f"{'(s + 1)' if task == 'integral_action' else ''}(s + 2)(s + 3)(s + 4), as required.")
+
+
+def test_the_hamiltonian_matrix_of_a_filter_has_no_transposes_of_transposes() -> None:
+    plant = symobs.StateSpace("[0 1; 0 -1/2]", C="[1 0; 0 1]")
+    page = str(symobs.kalman(plant, W="1", V="[1 0; 0 1/4]", G="[0; 1]").to("latex"))
+    assert r"(C^{\mathsf T})" not in page
+    assert r"-C^{\mathsf T}V^{-1}C" in page
+
+
+def test_the_square_of_a_root_is_what_stands_under_it() -> None:
+    """det [0 b; b 0] with b = -2 √(cg/m)/d_0 is -4 cg/(d_0² m)."""
+    page = str(render(document_of("magnetic_levitation"), "text"))
+    assert "det 𝒞 = -4c g/(d₀² m) ≠ 0" in page
+    assert "(√" not in page
