@@ -174,13 +174,11 @@ def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs, *, paired: 
         if size is not None:
             # p i, not pi, which is another number
             return glyphs.written(printer, Literal(size)) + glyphs.space + glyphs.imaginary
-        outside = _outside(root.radicand) if paired else Scalar.of(1)
-        if not outside.is_one:  # ±√(ω²ζ² − ω²) is ±ω √(ζ² − 1), whatever the sign of ω is
-            inner = replace(root, radicand=root.radicand / outside**2)
+        square = _outside(root.radicand) if paired else Scalar.of(1)
+        if not square.is_one:  # ±√(ω²ζ² − ω²) is ±ω √(ζ² − 1), whatever the sign of ω is
+            inner = replace(root, radicand=root.radicand / square**2)
             return (
-                glyphs.written(printer, Literal(outside))
-                + glyphs.space
-                + _distance(inner, printer, glyphs, paired=True)
+                glyphs.written(printer, Literal(square)) + glyphs.space + _distance(inner, printer, glyphs, paired=True)
             )
         whole, below = root.radicand, root.radicand.denominator
         half = isqrt(below.fraction().numerator) if below.is_constant else 0
