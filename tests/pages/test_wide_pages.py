@@ -277,3 +277,28 @@ def test_the_square_of_a_root_is_what_stands_under_it() -> None:
     page = str(render(document_of("magnetic_levitation"), "text"))
     assert "det 𝒞 = -4c g/(d₀² m) ≠ 0" in page
     assert "(√" not in page
+
+
+# -- what is stated below a title -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "law"),
+    [
+        ("lqr_third_order", "u = -K x."),
+        ("cruise_control_integral_action", "u = -K x + k_I ξ."),
+        ("output_regulation", "u = -K x + F w."),
+        ("output_feedback_servo", "u = -K x̂,"),
+        ("root_locus_ogata", ""),
+    ],
+)
+def test_a_page_with_a_gain_states_its_law_and_no_other_page_does(name: str, law: str) -> None:
+    page = str(render(document_of(name), "text"))
+    assert ("Notation:" in page) == bool(law)
+    assert f"Notation: {law}" in page or not law
+
+
+def test_both_gains_of_integral_action_stand_in_one_display() -> None:
+    page = str(render(document_of("cruise_control_integral_action"), "latex"))
+    (display,) = (part for part in re.findall(r"\\\[.*?\\\]", page) if r"K=\answer" in part)
+    assert r"\qquad k_{\mathrm I}=\answer" in display
