@@ -8,7 +8,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live.assets import SCHEMA, language_asked
@@ -215,7 +215,7 @@ _SETS = (
 )
 
 
-@cache
+@lru_cache(maxsize=64)
 def pole_sets(task: str) -> tuple[PoleSet, ...]:
     """Return the poles that can be moved: of a task with one gain they are called poles."""
     keywords, kind = tasks()[task].keywords, result_type(task)

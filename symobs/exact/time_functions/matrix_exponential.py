@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import sys
 from fractions import Fraction
-from functools import cache
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Literal
 
 from flint import arb, arb_mat, fmpq, fmpq_mat, fmpz, fmpz_mat
@@ -427,7 +427,7 @@ def _whole(balls: arb_mat, bits: int) -> list[list[Any]] | None:
     return [[entry.floor().unique_fmpz() for entry in row] for row in near.tolist()]
 
 
-@cache
+@lru_cache(maxsize=64)
 def _units(rows: int, columns: int) -> arb_mat:
     """Return a matrix of entries 0 ± 1."""
     return arb_mat(rows, columns, [arb(0, 1)] * (rows * columns))

@@ -343,8 +343,9 @@ def is_narrow(*matrices: Matrix, within: int = _WIDEST) -> bool:
 def determinant_form(page: Builder, value: Scalar) -> Term:
     """Return a determinant as its irreducible factors where it has several, else as it is; the square of √x is x."""
     for root in all_roots(value):
-        if root.kind == "sqrt" and root.name not in value.denominator.names:
-            value = AlgebraicExtension(root.value**2 - root.argument, root.name).reduce(value)
+        square = root.value**2 - root.argument  # 0 where the arithmetic knows it
+        if root.kind == "sqrt" and not square.is_zero and root.name not in value.denominator.names:
+            value = AlgebraicExtension(square, root.name).reduce(value)
     unit, factors = value.factors()
     if exponentials_in(value.denominator) or (len(factors) < 2 and all(power == 1 for _, power in factors)):
         return page.value(value)
