@@ -310,6 +310,8 @@ LETTERS: dict[str, LetterForm] = {
     **{
         f"f_{k}": LetterForm(rf"f_{{\mathrm {k}}}", f"f_{k}", "images of the eigenvectors under the gain") for k in "co"
     },
+    "O_nu": LetterForm(r"\mathcal O_\nu", "𝒪_ν", "first blocks of the observability matrix"),
+    "Ctr_nu": LetterForm(r"\mathcal C_\nu", "𝒞_ν", "first blocks of the controllability matrix"),
     "O_n": LetterForm(r"\mathcal O_n", "𝒪ₙ", "n rows of the observability matrix"),
     "Ctr_n": LetterForm(r"\mathcal C_n", "𝒞ₙ", "n columns of the controllability matrix"),
     **{f"b_{k}": LetterForm(f"b_{k}", f"b{'₀₁₂₃₄₅₆₇₈₉'[k]}", "column of the input matrix") for k in range(1, 10)},

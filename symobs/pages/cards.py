@@ -6,7 +6,7 @@ its result was made.
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Factored, Matrix, Root, Scalar
@@ -53,7 +53,11 @@ class CardPrinter:
         plant = self.result.plant
         printer: Printer[Any] = kind(plant.variable, plant.symbols.latex, discrete=plant.is_discrete)
         printer.language = self.language
-        printer.letters = {**LETTERS, **self.convention.forms(reduced=self.result.has_reduced_observer)}
+        reduced = self.result.has_reduced_observer
+        printer.letters = {**LETTERS, **self.convention.forms(reduced=reduced)}
+        if self.convention is STANDARD:
+            of_plant = plant.variable, tuple(sorted(plant.symbols.latex.items())), plant.is_discrete
+            printer.remember(_memory(kind.__name__, *of_plant, self.language.code, reduced))
         return printer
 
     @cached_property
@@ -97,6 +101,12 @@ class CardPrinter:
             return self.language.phrases["said_roots"].format(roots=self.roots(card.shown.values))
         left, right = card.shown.members[0], card.shown.members[-1]
         return self.language.phrases["said_equals"].format(name=printer.inline(left), value=printer.inline(right))
+
+
+@lru_cache(maxsize=24)
+def _memory(*_: object) -> dict[Any, Any]:
+    """Return what the cards before this one printed in the same letters: of a gain that is moved much stays as it is."""
+    return {}
 
 
 def cards(result: Result, names: Iterable[str], convention: Convention = STANDARD) -> tuple[Card, ...]:

@@ -146,10 +146,13 @@ class Problem:
         return Document(self.title, self.source, results, chosen, self.text, digits=self.digits, language=self.language)
 
 
-def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | None = None) -> Problem:
+def validate(
+    data: Mapping[str, Any], only: str | None = None, folder: Path | None = None, known: StateSpace | None = None
+) -> Problem:
     """Return the problem of a file's tables; `only` names a task to run instead of the file's own.
 
-    `folder` is where a convention of the user's own may lie.  Raises `ProblemErrors` with every error found.
+    `folder` is where a convention of the user's own may lie, and `known` the plant, where it was read from the same tables
+    before: what was found out about it is not found out again.  Raises `ProblemErrors` with every error found.
     """
     _refuse_other_kinds(data)
     data, errors = with_order_in_plant(data), Errors()
@@ -164,14 +167,11 @@ def validate(data: Mapping[str, Any], only: str | None = None, folder: Path | No
     symbols = Symbols() if data.get("symbols") is OPEN else _symbols(table_of(data, "symbols", errors), errors)
     symbols = with_constants(table_of(data, "constants", errors), symbols, errors)
     dt = period_of(data, symbols, errors)
-    plant = plant_of(
-        data,
-        symbols,
-        dt,
-        errors,
-        optional=bool(wanted) and all(task.works_without_plant for task in wanted),
-        moving={task.name for task in wanted} == {"equilibria"},
-    )
+    if known is None:
+        is_optional = bool(wanted) and all(task.works_without_plant for task in wanted)
+        is_moving = {task.name for task in wanted} == {"equilibria"}
+        known = plant_of(data, symbols, dt, errors, optional=is_optional, moving=is_moving)
+    plant = known
     specification, own = _specification(data, (*asked, *wanted), convention, symbols, errors)
     kinds = _kinds((*asked, *wanted))
     for table in (specification, *own.values()):

@@ -351,6 +351,21 @@ def vanishing_factors(values: Iterable[Scalar], signs: Mapping[str, str]) -> tup
     return tuple(found)
 
 
+def of_open_sign(value: Scalar, signs: Mapping[str, str]) -> Scalar:
+    """Return a polynomial with the sign of a value: its factors of known sign left out, ζ − 1 for ω²ζ² − ω²."""
+    if value.size > FACTORED_UP_TO or isinstance(value, SumOfSquares):
+        return value
+    unit, factors = value.factors()
+    rest = Scalar.of(-1 if sign_of_number(unit) == "negative" else 1)
+    for factor, power in factors:
+        known = _power_sign(_sign_of_factor(factor, signs), power)
+        if known == "negative":
+            rest = -rest
+        elif known != "positive":
+            rest = rest * factor ** (power % 2 or 2)
+    return value if rest.is_constant or sign_of_number(unit) not in {"positive", "negative"} else rest
+
+
 def joined(own: Iterable[Condition], others: Iterable[Condition]) -> tuple[Condition, ...]:
     """Return conditions, and those of the others whose expressions are not among theirs."""
     first = tuple(own)

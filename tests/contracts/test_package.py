@@ -85,3 +85,13 @@ def test_the_citation_is_of_this_version() -> None:
     lines = (ROOT / "CITATION.cff").read_text("utf-8").splitlines()
     assert f"version: {VERSION}" in lines
     assert f"## [{VERSION}]" in (ROOT / "CHANGELOG.md").read_text("utf-8").splitlines()
+
+
+@pytest.mark.parametrize("file", [".conda/recipe.yaml", "environment.yml"])
+def test_conda_asks_for_what_the_project_asks_for(file: str) -> None:
+    told = (ROOT / file).read_text("utf-8")
+    lines = {line.strip().removeprefix("- ") for line in told.splitlines()}
+    for wanted in SETTINGS["project"]["dependencies"]:
+        assert wanted.replace(">=", " >=") in lines, wanted
+    lowest = SETTINGS["project"]["requires-python"].removeprefix(">=")
+    assert f"python >={lowest}" in lines or (f'python_min: "{lowest}"' in lines and f"version: {VERSION}" in lines)

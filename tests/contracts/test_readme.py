@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import sympy
 
+from symobs.tasks.result import tasks
 from tests.kit import tabled
 from tests.support.paths import ROOT
 from tests.support.tools.command_line import fresh
@@ -29,6 +30,10 @@ def blocks(language: str, text: str = README + GUIDE) -> list[str]:
 def promised() -> list[tuple[str, str]]:
     """Every line `expression  # comment` of the Python blocks."""
     return re.findall(r"^(design\.\S+?) +# (.+)$", "\n".join(blocks("python")), re.MULTILINE)
+
+
+def test_the_table_of_the_readme_names_every_task() -> None:
+    assert {name for name in tasks() if f"`{name}`" not in README} == set()
 
 
 def test_python_gives_the_values_in_its_comments() -> None:

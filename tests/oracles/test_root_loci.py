@@ -104,3 +104,9 @@ def test_branch_points_with_letters_are_double_roots(loop: str) -> None:
         for expression in (moved, sympy.diff(moved, s)):
             value = expression.subs(s, place).subs({a: sympy.Rational(7, 3), b: sympy.Rational(3, 11)})
             assert abs(sympy.N(value, 60)) < 1e-50
+
+
+def test_what_has_no_region_is_refused_before_there_is_a_result() -> None:
+    plant = symobs.StateSpace("[0 1; -sqrt(a^2+1) -1]", "[0; 1]", "[1 0]", symbols={"a": "positive"})
+    with pytest.raises(symobs.InputError, match="is no polynomial"):
+        symobs.root_locus(plant)

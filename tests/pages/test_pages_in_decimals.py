@@ -475,3 +475,17 @@ def test_a_line_whose_decimals_fail_their_check_stays_exact(monkeypatch: pytest.
     with pytest.warns(SymobsWarning, match="a line in decimals is left out"):
         page = str(design.to("text"))
     assert "(1/30)[17  37]" in page
+
+
+def test_captions_of_a_page_in_decimals_have_decimals() -> None:
+    """The damping k - 1/4 vanishes at k = 0.25; the ends of what is drawn around it are no whole numbers."""
+    plant = StateSpace("[0 1; -3/2 1/4]", "[0; 1]", "[0 1]", symbols={"k": "real"})
+    result = stability_region(plant, K="[0 k]", parameters=["k"])
+    for name in ("text", "latex", "markdown"):
+        exact, decimals = (
+            " ".join(str(result.to(name, **how)).replace("$", "").split()).partition("move from the crosses")[2]
+            for how in ({"exact": True}, {"digits": 5})
+        )
+        told = [page.partition("upper end")[0] for page in (exact, decimals)]
+        assert ["0.3" in each for each in told] == [False, True]
+        assert ["3/10" in each or r"\frac{3}{10}" in each for each in told] == [True, False]

@@ -8,6 +8,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live.assets import SCHEMA, language_asked
@@ -118,9 +119,10 @@ def _decimal(value: Fraction) -> str:
     return f"{'-' if value < 0 else ''}{digits[:-_PLACES]}.{digits[-_PLACES:]}"
 
 
-def card_object(card: Card, printer: CardPrinter) -> dict[str, str]:
-    """Return a card in every form."""
-    return {"name": card.name, "mathml": printer.mathml(card), "latex": printer.latex(card), "says": printer.says(card)}
+def card_object(card: Card, printer: CardPrinter, *, moving: bool = False) -> dict[str, str]:
+    """Return a card in every form; nobody copies or reads aloud what is `moving`."""
+    seen = {"name": card.name, "mathml": printer.mathml(card)}
+    return seen if moving else {**seen, "latex": printer.latex(card), "says": printer.says(card)}
 
 
 # -- the picture ------------------------------------------------------------------------------------------------------
@@ -213,6 +215,7 @@ _SETS = (
 )
 
 
+@lru_cache(maxsize=64)
 def pole_sets(task: str) -> tuple[PoleSet, ...]:
     """Return the poles that can be moved: of a task with one gain they are called poles."""
     keywords, kind = tasks()[task].keywords, result_type(task)
@@ -429,21 +432,13 @@ def _answer(asked: Request) -> dict[str, Any]:
         },
         "claims": claims,
         "conditions": [_condition(found, printer) for found in result.holds_where],
-        "cards": [card_object(card, printer) for card in found],
+        "cards": [card_object(card, printer, moving=asked.moving) for card in found],
         "readouts": _readouts(there),
         "marks": _marks(there),
         "says": sentence(result, stable, printer),
         "unstable": [str(pole) for pole in stable.poles] if result.gains and result.verdict != "no" else [],
         "courses": responses,
-        "goal": goals_of(
-            there.result,
-            [
-                *((re, im) for _, re, im in _placed(there)),
-                *(pole for _, matrix in _loops_of_given_gains(there) for pole in _eigenvalues(matrix)),
-            ],
-            asked.goal,
-            responses,
-        ),
+        "goal": _goals(there, asked, responses),
     }
     if asked.loop != "none":
         whole["loop"] = frequency_response(there.result, language, moving=asked.loop == "moving")
@@ -519,6 +514,15 @@ _WANTED: dict[str, Callable[[Request], dict[str, Any]]] = {
     "start": _start,
     "begin": _begin,
 }
+
+
+def _goals(there: Solved, asked: Request, responses: dict[str, Any] | None) -> dict[str, dict[str, Any]]:
+    """Return what was wanted of the loop: its poles are those that were asked for, and those of given gains."""
+    if not asked.goal and not (responses and responses["step"]):
+        return {}
+    loops = (matrix for _, matrix in _loops_of_given_gains(there))
+    poles = [*((re, im) for _, re, im in _placed(there)), *(pole for loop in loops for pole in _eigenvalues(loop))]
+    return goals_of(there.result, poles, asked.goal, responses)
 
 
 # -- parts ------------------------------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import OrderedDict
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -23,6 +24,7 @@ from symobs.tasks.result import task_named
 if TYPE_CHECKING:
     from symobs.formula.phrases.languages import Language
     from symobs.problem import Problem
+    from symobs.system import StateSpace
 
 
 #: A request nests no deeper, and an exact value of a symbol is no longer.
@@ -37,11 +39,11 @@ LOOPS = ("none", "moving", "rest")
 
 _KEYS = {
     "schema", "id", "want", "problem", "task", "at", "cards", "cards_at", "courses", "cases", "format", "detail", "as", "goal",
-    "loop",
+    "loop", "moving",
 }  # fmt: skip
 
 
-_COURSES = {"start", "estimate", "end", "count", "step"}
+_COURSES = {"start", "estimate", "end", "count", "step", "fine"}
 _GOALS = {"settling", "overshoot", "gain", "phase"}
 _NAME = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|[A-Za-z_]\w*")
 _SYMBOL = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
@@ -73,6 +75,7 @@ class Responses:
     end: str | None = None
     count: int = 129
     step: bool = False
+    fine: bool = False
 
 
 @dataclass
@@ -92,6 +95,7 @@ class Request:
     detail: str
     export: str
     loop: str
+    moving: bool
 
     def problem(self) -> Problem:
         """Return the problem as it was given."""
@@ -112,19 +116,39 @@ class Request:
         return json.dumps([put_in(self.data, self.at), self.task], sort_keys=True, ensure_ascii=False)
 
 
+#: The plants of the last questions: while a pole is moved it stays the same, with what was found out about it.
+_plants: OrderedDict[str, StateSpace] = OrderedDict()
+_PLANTS_KEPT = 8
+
+
+def _read_once(data: Mapping[str, Any], name: str | None) -> Problem:
+    """Return the problem of a file's tables, whose plant is read where it is another one than before."""
+    table = _table(data, "plant")
+    if "A" not in table:  # it may depend on the question
+        return validate(data, name)
+    pade = _table(data, "specification").get("pade")
+    key = json.dumps([table, pade, data.get("symbols"), data.get("constants")], sort_keys=True)
+    problem = validate(data, name, known=_plants.get(key))
+    _plants[key] = problem.plant
+    _plants.move_to_end(key)
+    while len(_plants) > _PLANTS_KEPT:
+        _plants.popitem(last=False)
+    return problem
+
+
 def _validated(data: Mapping[str, Any], name: str | None) -> Problem:
     """Return the problem of one task, after the earlier tasks of the file whose gains are those of it."""
     several, found = data.get("tasks"), task_named(name) if name is not None else None
     if found is None or not isinstance(several, list) or name not in several:
-        return validate(data, name)
+        return _read_once(data, name)
     specification = _table(data, "specification")
     earlier = [str(each) for each in several[: several.index(name)]]
     gains = gains_from(found, {*specification, *_table(specification, found.name)}, earlier)
     if not gains:
-        return validate(data, name)
+        return _read_once(data, name)
     wanted = [*(earlier[place] for place in sorted({*gains.values()})), name]
     own = {key: value for key, value in specification.items() if key in wanted or key not in several}
-    return validate({**data, "tasks": wanted, "specification": own})
+    return _read_once({**data, "tasks": wanted, "specification": own}, None)
 
 
 def parsed(body: bytes) -> Any:
@@ -195,13 +219,15 @@ def read(body: object) -> Request:
     names = _names(body.get("cards"), note)
     at = _at(body.get("at", {}), note)
     responses = _responses(body.get("courses"), note)
-    cards_at, cases, goal = truth("cards_at"), truth("cases"), body.get("goal", {})
+    cards_at, cases, moving, goal = truth("cards_at"), truth("cases"), truth("moving"), body.get("goal", {})
     if not isinstance(goal, Mapping) or not _GOALS.issuperset(goal) or not all(map(_is_short, goal.values())):
         note("another object is expected", "goal", f"its keys are {', '.join(sorted(_GOALS))}, its values texts")
         goal = {}
     if errors:
         raise ProblemErrors(tuple(errors))
-    return Request(identity, want, data, task, at, names, cards_at, cases, responses, goal, detail, export, loop)
+    return Request(
+        identity, want, data, task, at, names, cards_at, cases, responses, goal, detail, export, loop, moving
+    )
 
 
 def _refuse(value: object, where: str, depth: int, note: Any) -> None:
@@ -272,11 +298,12 @@ def _responses(value: object, note: Any) -> Responses | None:
     if not isinstance(count, int) or isinstance(count, bool) or not 2 <= count <= _MOST_INSTANTS:
         note(f"a number from 2 to {_MOST_INSTANTS} is expected", "courses.count", 'write "count": 129')
         return None
-    step = value.get("step", False)
-    if not isinstance(step, bool):
-        note("true or false is expected", "courses.step", 'write "step": true')
-        return None
-    return Responses(texts["start"], texts["estimate"], end, count, step)
+    flags = {name: value.get(name, False) for name in ("step", "fine")}
+    for name, flag in flags.items():
+        if not isinstance(flag, bool):
+            note("true or false is expected", f"courses.{name}", f'write "{name}": true')
+            return None
+    return Responses(texts["start"], texts["estimate"], end, count, **flags)
 
 
 # -- values in the place of symbols -----------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
 from math import ceil, exp, isqrt, log, log10, pi
-from operator import mul
+from operator import mul, sub
 from typing import TYPE_CHECKING, Any
 
 from symobs.applications.live.request import FieldError
@@ -14,7 +14,7 @@ from symobs.exact import Matrix
 from symobs.exact.algebraic.enclosure import is_number
 from symobs.ground.errors import InputError
 from symobs.system import Symbols, read_matrix
-from symobs.tasks.analysis.time_response.courses import course, rounded_up
+from symobs.tasks.analysis.time_response.courses import rounded_up
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,8 +32,8 @@ _LONGEST = Fraction(10**6)
 _COARSE, _FINEST = 3, 9
 _DEAD, _SAMPLES = 1e-9, 40
 #: A segment is halved where a response may be further from its middle than this part of the height of the picture; so many
-#: segments are drawn at most, one for each point of a screen, and so many looked at behind the end at least.
-_BETWEEN, _MOST_SEGMENTS, _LEAST_BEHIND = Fraction(1, 110), 512, 32
+#: segments are drawn at most, one for each point of a screen.
+_BETWEEN, _MOST_SEGMENTS = Fraction(1, 110), 512
 #: What stays below this part of the peak has settled; nothing is read off a response whose second difference is a larger one.
 _SETTLED, _COARSEST = Fraction(1, 50), Fraction(1, 3)
 #: A mode that overshoots by less is not seen to.
@@ -64,24 +64,26 @@ class Signals:
         discrete: bool = False,
     ) -> None:
         """Take the signals apart into rows; a reference that enters by `driven` and stays 1 is the last state."""
-        from symobs.exact.time_functions.matrix_exponential import fraction_near  # noqa: PLC0415 - FLINT
+        from symobs.exact.time_functions.matrix_exponential import eigenvalues_near, fraction_near, fractions_near  # noqa: PLC0415 - FLINT
 
         order = loop.shape[0]
-        self.loop, self.matrix, self.start = loop, loop, start
+        self.matrix, self.start, self.modes = loop, start, eigenvalues_near(loop)
+        self.converges = max(map(abs, self.modes)) < 1 if discrete else max(mode.real for mode in self.modes) < 0
         if driven is not None:
             held = Matrix.identity(1) if discrete else Matrix.zeros(1, 1)
             self.matrix = Matrix.block([[loop, driven], [Matrix.zeros(1, order), held]])
             self.start = [Fraction(0)] * order + [Fraction(1)]
         self.rows = [
-            (name, place if table.shape[0] > 1 else 0, list(map(fraction_near, row)), dashed)
+            (name, place if table.shape[0] > 1 else 0, row, dashed)
             for name, table, dashed in drawn
-            for place, row in enumerate(table.rows, 1)
-            if all(map(is_number, row))  # a gain may have parameters where the loop has none
+            if not table.names
+            or all(map(is_number, table.entries))  # a gain may have parameters where the loop has none
+            for place, row in enumerate(fractions_near(table), 1)
         ]
         self.finals: list[int | None] = [0 if driven is None else None] * len(self.rows)
         self.ends: list[str] = []
         self.follows = False
-        if driven is not None and _converges(loop, discrete=discrete):
+        if driven is not None and self.converges:
             rest = (Matrix.identity(order) - loop if discrete else -loop).solve(driven)
             state = [*map(fraction_near, rest.entries), Fraction(1)]
             self.finals = [round(sum(map(mul, row, state), Fraction(0)) * _FINE) for _, _, row, _ in self.rows]
@@ -91,12 +93,6 @@ class Signals:
             self.follows = all((end - 1).is_zero for end in ends)
 
 
-def _converges(loop: Matrix, *, discrete: bool) -> bool:
-    from symobs.exact.time_functions.matrix_exponential import spectral_abscissae, spectral_radius  # noqa: PLC0415 - FLINT
-
-    return spectral_radius(loop) < 1 if discrete else spectral_abscissae(loop)[0] < 0
-
-
 def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     """Return the responses of a design, those of the input apart; raises `NoResponse` or, for what was asked, `InputError`.
 
@@ -104,11 +100,11 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     drawn for half as long again, or longer.
     """
     signals, discrete = _signals(result, asked), result.plant.is_discrete
-    end = _end(signals.loop, asked.end, discrete=discrete)
+    end = _end(signals.modes, asked.end, discrete=discrete)
     found = _drawn(signals, end, asked, discrete=discrete)
     lines = found["lines"] + found.get("effort", {}).get("lines", [])
     is_open = any(line.get("peak", "0") != "0" and "settles" not in line for line in lines)
-    if asked.end is None and is_open and _converges(signals.loop, discrete=discrete):
+    if asked.end is None and is_open and signals.converges:
         later = Fraction(min(ceil(end * _LONGER), _SAMPLES)) if discrete else rounded_up(float(end * _LONGER))
         if end < later <= _LONGEST:
             with suppress(NoResponse):  # fast beside it
@@ -123,32 +119,39 @@ def _drawn(signals: Signals, end: Fraction, asked: Responses, *, discrete: bool)
         values = _stepped(signals, 2 * last + 1)
         every, seen, behind = 1, [line[: last + 1] for line in values], [line[last:] for line in values]
     else:
-        every, (seen, behind) = 2, _enclosed(signals, end, asked.count)
-    told = list(zip(signals.rows, seen, behind, signals.finals, strict=True))
+        every, seen, behind = _enclosed(signals, end, asked)
+    told = [
+        (name, place, dashed, line[::every], _read_off(line, after, end, final, is_continuous=not discrete))
+        for (name, place, _, dashed), line, after, final in zip(signals.rows, seen, behind, signals.finals, strict=True)
+    ]
     head: dict[str, Any] = {"end": str(end), "discrete": discrete, "step": asked.step}
     if asked.step:
         head |= {"ends": signals.ends, "follows": signals.follows}
-    effort = [each for each in told if each[0][0] == "u"]
-    found = head | _picture([each for each in told if each[0][0] != "u"], end, every, reference=asked.step)
-    return found | ({"effort": head | _picture(effort, end, every)} if effort else {})
+    effort = [each for each in told if each[0] == "u"]
+    found = head | _picture([each for each in told if each[0] != "u"], end, reference=asked.step)
+    return found | ({"effort": head | _picture(effort, end)} if effort else {})
 
 
-def _picture(told: list[Any], end: Fraction, every: int, *, reference: bool = False) -> dict[str, Any]:
+def _picture(told: list[Any], end: Fraction, *, reference: bool = False) -> dict[str, Any]:
     """Return lines with a window around them, and around a reference of 1."""
-    heights = [line[::every] for _, line, _, _ in told]
-    peak = max(abs(height) for line in heights for height in line)
+    peak = max(_largest(heights) for _, _, _, heights, _ in told)
     if peak > _LARGEST * _FINE:
         raise NoResponse(_TOO_LARGE)
     digits = _COARSE if not peak else min(_FINEST, max(_COARSE, _COARSE - int(log10(peak / _FINE))))
     parts = 10**digits
     coarser = _FINE // parts
-    rounded = [[(height + coarser // 2) // coarser for height in line] for line in heights]
+    half = coarser // 2
     lines = [
-        {"signal": name, "component": place, "dashed": dashed, "heights": line}
-        | _read_off(fine, after, end, every, final)
-        for ((name, place, _, dashed), fine, after, final), line in zip(told, rounded, strict=True)
+        {
+            "signal": name,
+            "component": place,
+            "dashed": dashed,
+            "heights": [(v + half) // coarser for v in heights],
+            **read,
+        }
+        for name, place, dashed, heights, read in told
     ]
-    low, high = min(map(min, rounded)), max(map(max, rounded))
+    low, high = min(min(line["heights"]) for line in lines), max(max(line["heights"]) for line in lines)
     high = max(high, parts) if reference else high
     room = Fraction(max(high - low, 1), 20)
     window = [["0", str(end)], [_decimal((low - room) / parts), _decimal((high + room) / parts)]]
@@ -164,7 +167,7 @@ def _signals(result: Result, asked: Responses) -> Signals:
     loop = fields.get({"observer": "A", "reduced_order_observer": "F"}.get(result.task, "closed_loop_matrix"))
     if loop is None or "responses" not in result.panels:
         raise NoResponse
-    if not all(map(is_number, loop.entries)) or result.plant.relations:
+    if (loop.names and not all(map(is_number, loop.entries))) or result.plant.relations:
         raise NoResponse(_NEEDS_NUMBERS)
     if asked.step:
         return Signals(loop, [], *_of_a_step(result, loop.shape[0]), discrete=is_discrete)
@@ -266,20 +269,18 @@ def _vector(text: str, size: int, otherwise: Fraction, where: str) -> list[Fract
 # -- when -------------------------------------------------------------------------------------------------------------
 
 
-def _end(matrix: Matrix, asked: str | None, *, discrete: bool) -> Fraction:
+def _end(modes: Sequence[complex], asked: str | None, *, discrete: bool) -> Fraction:
     """Return the last instant: as it was asked for, or where the slowest mode has converged."""
-    from symobs.exact.time_functions.matrix_exponential import spectral_abscissae, spectral_radius  # noqa: PLC0415 - FLINT
-
     if asked is not None:
         (value,) = _vector(asked, 1, Fraction(1), "courses.end")
         if not 0 < value <= _LONGEST or (discrete and (value.denominator != 1 or value > 1000)):
             raise InputError("no such last instant", where="courses.end", repair='write a positive number: "3"')
         return value
     if discrete:
-        radius, order = spectral_radius(matrix), matrix.shape[0]
+        radius, order = max(map(abs, modes)), len(modes)
         usual = order + 2 if radius < _DEAD else ceil(_TIMES / -log(radius)) if radius < 1 else _SAMPLES
         return Fraction(max(6, min(usual, _SAMPLES)))
-    largest, smallest = spectral_abscissae(matrix)
+    largest, smallest = max(mode.real for mode in modes), min(mode.real for mode in modes)
     if largest > 0:
         return rounded_up(_GROWN / largest)
     slowest = -largest if largest < 0 else max(-smallest, 0.0) / 4
@@ -289,41 +290,40 @@ def _end(matrix: Matrix, asked: str | None, *, discrete: bool) -> Fraction:
 # -- how --------------------------------------------------------------------------------------------------------------
 
 
-def _enclosed(signals: Signals, end: Fraction, count: int) -> tuple[list[tuple[int, ...]], list[tuple[int, ...]]]:
+def _enclosed(signals: Signals, end: Fraction, asked: Responses) -> tuple[int, list[list[int]], list[list[int]]]:
     """Return the heights of every signal in fine parts, within a quarter of the finest ones that are shown.
 
-    They are those of every half segment, and fewer from the end to twice the end.  Segments are halved where a response
-    changes fast.
+    There are as many as were asked for, as many again up to twice the end, and twice as many, or more, where they are to be
+    fine: segments are halved where a response changes fast, and its heights stand closer where it could not be read off.
+    The first number tells how many heights there are to a segment.
     """
-    from symobs.exact.time_functions.matrix_exponential import spectral_radius  # noqa: PLC0415 - FLINT
-
-    if any(4 * (sum(map(abs, row)) + 1) * 10**_FINEST > _FINE for _, _, row, _ in signals.rows):
-        raise NoResponse(_TOO_WIDE)
-    segments, fastest = count - 1, spectral_radius(signals.matrix) * float(end)
-    most = segments
-    while 2 * most <= _MOST_SEGMENTS:
-        most *= 2
-    states = _at_instants(signals, end / (2 * most), 2 * most + 1)
-    coarse = _seen(signals, states, 2 * most // segments)
-    height = max(map(max, coarse)) - min(map(min, coarse))
-    bend = max(_largest(_second_differences(line)) for line in coarse)
-    while 2 * segments <= _MOST_SEGMENTS and (fastest > _TURN * segments or bend > 8 * _BETWEEN * height):
-        segments, bend = 2 * segments, bend // 4
+    segments, fastest = asked.count - 1, max(map(abs, signals.modes)) * float(end)
+    while 2 * segments <= _MOST_SEGMENTS and fastest > _TURN * segments:
+        segments *= 2
     if fastest > _TURN * segments:  # a mode might turn unseen between two instants
         raise NoResponse(_TOO_FAST)
-    behind = max(_LEAST_BEHIND, ceil(fastest / _TURN))
-    after = _at_instants(signals, end / behind, 2 * behind + 1)
-    return _seen(signals, states, most // segments), _seen(signals, [line[behind:] for line in after], 1)
+    instants = 2 * segments if asked.fine else segments
+    lines = _at_instants(signals, end / instants, 2 * instants + 1)
+    seen, after = [line[: instants + 1] for line in lines], [line[instants:] for line in lines]
+    if asked.fine:
+        height, bend = max(map(max, seen)) - min(map(min, seen)), 4 * max(map(_bend, seen))
+        while 2 * segments <= _MOST_SEGMENTS and bend > 8 * _BETWEEN * height:
+            segments, bend = 2 * segments, bend // 4
+        while instants < segments or (instants < 2 * _MOST_SEGMENTS and any(map(_is_coarse, seen))):
+            instants *= 2
+            seen = _at_instants(signals, end / instants, instants + 1)
+    return instants // segments, seen, after
 
 
-def _seen(signals: Signals, states: list[list[int]], every: int) -> list[tuple[int, ...]]:
-    """Return the heights of every signal at some of the instants."""
-    some = [line[::every] for line in states]
-    return [course(row, some) for _, _, row, _ in signals.rows]
+def _bend(line: Sequence[int]) -> int:
+    """Return the largest modulus of the second differences."""
+    slopes = list(map(sub, line[1:], line))
+    return _largest(list(map(sub, slopes[1:], slopes)))
 
 
-def _second_differences(line: Sequence[int]) -> list[int]:
-    return [a - 2 * v + b for a, v, b in zip(line, line[1:], line[2:], strict=False)]
+def _is_coarse(line: Sequence[int]) -> bool:
+    """Return whether nothing is read off a line, whose second differences are large beside its values."""
+    return _bend(line) > _COARSEST * _largest(line)
 
 
 def _largest(line: Sequence[int]) -> int:
@@ -332,16 +332,16 @@ def _largest(line: Sequence[int]) -> int:
 
 
 def _at_instants(signals: Signals, step: Fraction, count: int) -> list[list[int]]:
-    """Return the components of the state."""
+    """Return the heights of every signal in fine parts."""
     from symobs.exact.time_functions.matrix_exponential import state_response  # noqa: PLC0415 - FLINT
 
     try:
-        return state_response(signals.matrix, signals.start, step, count, _FINE)
+        return state_response(signals.matrix, signals.start, step, count, _FINE, [row for _, _, row, _ in signals.rows])
     except ArithmeticError:
         raise NoResponse(_TOO_WIDE) from None
 
 
-def _stepped(signals: Signals, count: int) -> list[tuple[int, ...]]:
+def _stepped(signals: Signals, count: int) -> list[list[int]]:
     """Return the values at 0, 1, 2, … in fine parts, rounded from exact ones."""
     from symobs.exact.time_functions.matrix_exponential import fraction_near  # noqa: PLC0415 - FLINT
 
@@ -350,8 +350,7 @@ def _stepped(signals: Signals, count: int) -> list[tuple[int, ...]]:
         states.append([fraction_near(entry) for entry in state.entries])
         state = signals.matrix @ state
     return [
-        tuple(round(sum(map(mul, row, state), Fraction(0)) * _FINE) for state in states)
-        for _, _, row, _ in signals.rows
+        [round(sum(map(mul, row, state), Fraction(0)) * _FINE) for state in states] for _, _, row, _ in signals.rows
     ]
 
 
@@ -363,7 +362,7 @@ def _decimal(value: Fraction) -> str:
 
 
 def _read_off(
-    line: Sequence[int], after: Sequence[int], end: Fraction, every: int, final: int | None
+    line: Sequence[int], after: Sequence[int], end: Fraction, final: int | None, *, is_continuous: bool
 ) -> dict[str, str]:
     """Return the peak and the last value up to the end, and when the response settles, if that is before the end.
 
@@ -371,7 +370,7 @@ def _read_off(
     twice the end, between the instants too if time is continuous.  Where a response by itself is drawn too coarsely to see
     that, nothing is read off.
     """
-    last, is_continuous = len(line) - 1, every > 1
+    last = len(line) - 1
     peak = _peak(line, is_continuous=is_continuous)
     if peak is None:
         return {}
@@ -398,10 +397,9 @@ def _peak(line: Sequence[int], *, is_continuous: bool) -> Fraction | None:
     place = next(k for k, value in enumerate(line) if abs(value) == largest)
     peak = Fraction(line[place])
     if is_continuous:
-        second = _second_differences(line)
-        if _largest(second) > _COARSEST * largest:
+        if _is_coarse(line):
             return None
-        if 0 < place < last and (bend := second[place - 1]):
+        if 0 < place < last and (bend := line[place - 1] - 2 * line[place] + line[place + 1]):
             peak -= Fraction((line[place + 1] - line[place - 1]) ** 2, 8 * bend)  # of the parabola through three
     return peak
 
@@ -412,6 +410,8 @@ def _last_above(band: int, line: Sequence[int], *, is_continuous: bool) -> int:
     It may bulge out of a segment by an eighth of the second difference.
     """
     last = start = len(line) - 1
+    if 2 * _largest(line) < band - 1:
+        return 0
     if is_continuous:  # no second difference is larger than four times the values
         while start >= 0 and -band < 2 * line[start] < band - 1:
             start -= 1

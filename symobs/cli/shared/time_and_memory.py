@@ -26,7 +26,7 @@ Value = TypeVar("Value")
 
 #: Seconds that a child whose time is over has to leave in order (its TeX, its files); in a call into FLINT it cannot.
 GRACE = 1.0
-_ABORTS = {signal.SIGABRT, signal.SIGSEGV, signal.SIGBUS}
+_ABORTS = {getattr(signal, name, None) for name in ("SIGABRT", "SIGSEGV", "SIGBUS")}
 _LESS = "ask for less, or put numbers in place of symbols"
 
 

@@ -26,6 +26,8 @@ _KINDS = {"sqrt", "exp", "cos", "sin", "cosh", "sinh", "log", "asin", "acos", "a
 
 def is_number(value: Scalar) -> bool:
     """Return whether a value has no parameter: only rational numbers, π, roots, and functions of them."""
+    if not value.names:
+        return True
     found = [f for name in value.names if (f := function_named(name)) is not None]
     is_written = all(f.kind in _KINDS or (isinstance(f, RootSum) and f.is_rational) for f in found)
     return is_written and symbols_in(value) <= {PI}

@@ -315,6 +315,8 @@ def _denominator(value: RationalFunction) -> str:
 
 def scalar_text(value: RationalFunction) -> str:
     """Return the canonical text of a scalar."""
+    if value.is_constant:
+        return str(value.fraction())
     below = value.denominator
     if below.is_constant:
         return _sum(value.numerator, int(below.fraction()))

@@ -53,6 +53,9 @@ def coefficients_in(polynomial: fmpz_mpoly, index: int, source: Field, target: F
     return [target.context.from_dict(terms) for terms in collected]
 
 
+_NONE: frozenset[str] = frozenset()
+
+
 class Scalar:
     """An element numerator / denominator of a field."""
 
@@ -241,9 +244,11 @@ class Scalar:
     @property
     def names(self) -> frozenset[str]:
         """The generators that really occur; cached, since they are used often."""
+        if self.is_constant:
+            return _NONE
         if not hasattr(self, "known_names"):
-            parts = (part for part in (self.numerator_part, self.denominator_part) if not part.is_one())
-            self.known_names: frozenset[str] = frozenset().union(*(occurring(part, self.field.names) for part in parts))
+            parts = [part for part in (self.numerator_part, self.denominator_part) if not part.is_one()]
+            self.known_names: frozenset[str] = frozenset().union(*[occurring(part, self.field.names) for part in parts])
         return self.known_names
 
     @property

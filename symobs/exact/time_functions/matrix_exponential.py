@@ -8,8 +8,10 @@ parameters; square roots stand in the scalar functions only.
 
 from __future__ import annotations
 
+import sys
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Literal
 
 from flint import arb, arb_mat, fmpq, fmpq_mat, fmpz, fmpz_mat
 
@@ -268,18 +270,16 @@ def _over_its_field(matrix: Matrix) -> Matrix:
 
 
 #: Bits that are tried in turn until all enclosures are narrow.
-_BITS = (96, 256, 512, 1024, 2048, 4096)
+_BITS = (128, 256, 512, 1024, 2048, 4096)
 #: So many columns are enclosed before they are doubled as whole numbers.
 _ENCLOSED = 16
-#: 0 ± 1.
-_UNIT = arb(0, 1)
 #: Bits of a rational number near to one that is none.
 _NEAR = 240
 
 
 def eigenvalues_near(matrix: Matrix) -> list[complex]:
     """Return the different eigenvalues of a numeric matrix, approximately."""
-    rows = [[fmpq(f.numerator, f.denominator) for f in map(fraction_near, row)] for row in matrix.rows]
+    rows = [[fmpq(f.numerator, f.denominator) for f in row] for row in fractions_near(matrix)]
     roots: Any = fmpq_mat(rows).charpoly().complex_roots()  # pairs (root, multiplicity), not what its stub says
     return [complex(float(root.real.mid()), float(root.imag.mid())) for root, _ in roots]
 
@@ -305,23 +305,43 @@ def fraction_near(value: Scalar) -> Fraction:
     return found
 
 
+def fractions_near(matrix: Matrix) -> list[list[Fraction]]:
+    """Return the rows of a matrix of numbers, those near to the irrational ones; raises `ArithmeticError` for letters."""
+    if isinstance(matrix.table, fmpz_mat):
+        below = int(number_of(matrix.denominator))
+        return [[Fraction(int(entry), below) for entry in row] for row in matrix.table.tolist()]
+    return [list(map(fraction_near, row)) for row in matrix.rows]
+
+
 def state_response(
-    matrix: Matrix, start: Sequence[Fraction | Scalar], step: Fraction, count: int, parts: int
+    matrix: Matrix,
+    start: Sequence[Fraction | Scalar],
+    step: Fraction,
+    count: int,
+    parts: int,
+    signals: Sequence[Sequence[Fraction]] | None = None,
 ) -> list[list[int]]:
     """Return each component of e^{Mt} v at `count` instants from 0 on, in multiples of 1/parts, with errors of at most one.
 
-    Raises `ArithmeticError` where the enclosures stay too wide.
+    With `signals`, rows of numbers, it is each row times e^{Mt} v instead.  Raises `ArithmeticError` where the enclosures
+    stay too wide.
     """
     for bits in _BITS:
         with Precision(bits + bits // 2):
-            found = _doubled(matrix, start, step, count, parts, bits)
+            found = _doubled(matrix, start, step, count, parts, signals, bits)
         if found is not None:
             return found
     raise ArithmeticError("a response with too much to compute")
 
 
 def _doubled(
-    matrix: Matrix, start: Sequence[Fraction | Scalar], step: Fraction, count: int, parts: int, bits: int
+    matrix: Matrix,
+    start: Sequence[Fraction | Scalar],
+    step: Fraction,
+    count: int,
+    parts: int,
+    signals: Sequence[Sequence[Fraction]] | None,
+    bits: int,
 ) -> list[list[int]] | None:
     """Return the same from fractions of so many bits; None where they are too few.
 
@@ -354,29 +374,63 @@ def _doubled(
         more = min(columns, count - columns)
         fields = fmpz(1) << width * more
         ones_there = ones % fields
-        high, mask = ones_there << (width - 1), (ones_there << (width - bits)) - ones_there
-        products = fmpz_mat(table) * fmpz_mat([[line % fields] for line in lines])
-        news = [((((x + high) % fields) >> bits) & mask) - (high >> bits) for x in products.entries()]
+        news = _combined(table, lines, ones_there, fields, width, bits)
         lines = [line + (new << width * columns) for line, new in zip(lines, news, strict=True)]
         ones += ones_there << width * columns
         off = max(off, (((norm + 2 * order) * off + 2 * order * most) >> bits) + 1)
         most, columns, power = max(most, (norm * most >> bits) + 1), columns + more, power * power
-    if off >= 1 << (kept - 1):
+    if signals is not None:
+        table = [[fmpz((part.numerator << bits) // part.denominator) for part in row] for row in signals]
+        norm = max(int(sum(map(abs, row))) for row in table)
+        if norm * most >= 1 << (width - 2):
+            return None
+        lines = _combined(table, lines, ones, fmpz(1) << width * columns, width, bits)
+        off, most = (((norm + order) * off + order * most) >> bits) + 2, (norm * most >> bits) + 1
+    words = (most >> kept).bit_length() // 64 + 1
+    if off >= 1 << (kept - 1) or 64 * words >= width - kept:
         return None
-    half = (ones << (width - 1)) + (ones << (kept - 1))
-    views = [memoryview(int((x + half) >> kept).to_bytes(columns * width // 8, "little")) for x in lines]
-    whole, size, below = width // 8, (width - kept) // 8, 1 << (width - 1 - kept)
-    places = range(0, whole * count, whole)
-    return [[int.from_bytes(view[at : at + size], "little") - below for at in places] for view in views]
+    half, low, above = ones << (width - 1), ones << (kept + 62), (ones << width) - (ones << (kept + 63))
+    rounded = [line + (ones << (kept - 1)) for line in lines]
+    return [_fields(x + half, width, kept, columns, 1 if (x + low) & above == 0 else words)[:count] for x in rounded]
+
+
+def _combined(table: list[list[Any]], lines: list[Any], ones: fmpz, fields: fmpz, width: int, bits: int) -> list[Any]:
+    """Return sums of lines, field by field, times numbers in parts of 2⁻ᵇⁱᵗˢ; each field is rounded down."""
+    high, mask = ones << (width - 1), (ones << (width - bits)) - ones
+    products = fmpz_mat(table) * fmpz_mat([[line % fields] for line in lines])
+    return [((((x + high) % fields) >> bits) & mask) - (high >> bits) for x in products.entries()]
+
+
+def _fields(line: fmpz, width: int, kept: int, count: int, words: int) -> list[int]:
+    """Return the first fields of a long integer, rounded down to whole numbers of so many words; `kept` bits are fractions.
+
+    What is added to a field above these words does not matter.
+    """
+    size, native = width // 64, int(line >> kept).to_bytes(width // 8 * count, sys.byteorder)
+
+    def word(k: int, kind: Literal["q", "Q"]) -> list[int]:
+        whole = memoryview(native).cast(kind)
+        return (whole[k::size] if sys.byteorder == "little" else whole[-1 - k :: -size]).tolist()
+
+    values = word(words - 1, "q")
+    for k in reversed(range(words - 1)):
+        values = [(high << 64) + low for high, low in zip(values, word(k, "Q"), strict=True)]
+    return values
 
 
 def _whole(balls: arb_mat, bits: int) -> list[list[Any]] | None:
     """Return enclosures in parts of 2⁻ᵇⁱᵗˢ, off by at most two; None where they are wider."""
     scaled = balls * arb(2) ** bits
     near = scaled.mid()
-    if not (near + arb_mat(near.nrows(), near.ncols(), [_UNIT] * (near.nrows() * near.ncols()))).contains(scaled):
+    if not (near + _units(near.nrows(), near.ncols())).contains(scaled):
         return None
     return [[entry.floor().unique_fmpz() for entry in row] for row in near.tolist()]
+
+
+@lru_cache(maxsize=64)
+def _units(rows: int, columns: int) -> arb_mat:
+    """Return a matrix of entries 0 ± 1."""
+    return arb_mat(rows, columns, [arb(0, 1)] * (rows * columns))
 
 
 def _packed(fields: Sequence[fmpz], width: int) -> fmpz:

@@ -3,6 +3,7 @@
 from symobs.formula.tree.arithmetic import Arithmetic, Signal, agree, differ, exact_meaning, is_rounded
 from symobs.formula.tree.evaluate import Exact, Modular, ModuloIdeal, evaluate
 from symobs.formula.tree.nodes import (
+    ROOT_DIGITS,
     Apply,
     At,
     Block,
@@ -44,6 +45,7 @@ from symobs.formula.tree.sign_changes import SignReversal
 from symobs.formula.tree.term import Environment
 
 __all__ = [
+    "ROOT_DIGITS",
     "Apply",
     "Arithmetic",
     "At",

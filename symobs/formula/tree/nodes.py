@@ -211,9 +211,13 @@ class Roots:
     values: tuple[Root, ...]
 
 
+#: Significant digits of roots in decimals on a page of exact numbers.
+ROOT_DIGITS = 5
+
+
 @dataclass
 class RoundedRoots(Roots):
-    """The same on a page in decimals: (real part, imaginary part, whether one is rounded) for each root."""
+    """The same in decimals: (real part, imaginary part, whether one is rounded) for each root."""
 
     texts: tuple[tuple[str, str, bool], ...]
 

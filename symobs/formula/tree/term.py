@@ -88,8 +88,8 @@ class Term:
 
     @property
     def T(self) -> Term:
-        """The transpose."""
-        return self._with(Transpose(self.formula))
+        """The transpose; of a transpose the matrix itself."""
+        return self._with(self.formula.operand if isinstance(self.formula, Transpose) else Transpose(self.formula))
 
     @property
     def pencil(self) -> Term:

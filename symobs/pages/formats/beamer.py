@@ -108,8 +108,19 @@ def _title(text: str) -> dict[str, Any]:
     return {**slides, "frames": [], "drawings": False}
 
 
-def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Heading, tuple[Block, ...]]]:
-    """Yield the blocks of each heading of the first level after it; leading blocks belong to the first."""
+def _frames(blocks: Sequence[Block]) -> list[tuple[Heading, list[Block]]]:
+    """Return the blocks of each heading of the first level; a section of one sentence has no frame of its own."""
+    frames: list[tuple[Heading, list[Block]]] = []
+    for heading, body in _sections(blocks):
+        if frames and (_is_sentence(body) or _is_sentence(frames[-1][1])):
+            frames[-1][1].extend((heading, *body))
+        else:
+            frames.append((heading, body))
+    return frames
+
+
+def _sections(blocks: Sequence[Block]) -> Iterator[tuple[Heading, list[Block]]]:
+    """Yield each heading of the first level with the blocks after it; leading blocks belong to the first."""
     title = Heading("", ())
     body: list[Block] = []
     for block in blocks:
@@ -117,13 +128,15 @@ def _frames(blocks: Sequence[Block]) -> Iterator[tuple[Heading, tuple[Block, ...
             body.append(block)
         elif not title.inlines or not body:
             title = block
-        elif len(body) == 1 and isinstance(body[0], Paragraph | Verified):
-            body.append(block)
         else:
-            yield title, tuple(body)
+            yield title, body
             title, body = block, []
     if body:
-        yield title, tuple(body)
+        yield title, body
+
+
+def _is_sentence(body: Sequence[Block]) -> bool:
+    return len(body) == 1 and isinstance(body[0], Paragraph | Verified)
 
 
 def _is_no_slide(before: Block, last: Block) -> bool:
@@ -136,10 +149,10 @@ def _is_no_slide(before: Block, last: Block) -> bool:
 class _SlideWriter(LatexWriter):
     """Writer of blocks for slides, which fits unbreakable ones."""
 
-    def frame(self, heading: Heading, body: tuple[Block, ...]) -> dict[str, str]:
+    def frame(self, heading: Heading, body: Sequence[Block]) -> dict[str, str]:
         """Return the template values of a frame."""
         self.printer.keep_time(heading.time)
-        parts = [body]
+        parts = [tuple(body)]
         while len(parts[0]) > 1 and _is_no_slide(*parts[0][-2:]):
             if len(parts) > 1 and isinstance(parts[0][-2], _UNBROKEN):
                 break  # a figure leaves room for one of them
@@ -151,23 +164,33 @@ class _SlideWriter(LatexWriter):
         """Return one block."""
         if isinstance(block, AnswerSpace):  # nobody writes on a slide
             return ""
-        written = super().block(block)
-        unparted = [written.partition(r"\answer{")[2], *_MATRIX.findall(written)] if isinstance(block, Display) else []
-        written = _linked(written) if isinstance(block, Display) else written
-        is_tall = any(part.count(r"\\") > _TALL for part in unparted)
-        if is_tall or isinstance(block, (*_UNBROKEN, References)):
-            return f"\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
+        written, is_whole = super().block(block), True
+        if isinstance(block, Display):
+            unparted = [written.partition(r"\answer{")[2], *_MATRIX.findall(written)]
+            written, is_whole = linked(written)
+            is_whole = is_whole and all(part.count(r"\\") <= _TALL for part in unparted)
+        if not is_whole or isinstance(block, (*_UNBROKEN, References)):
+            led = "\\nopagebreak\n" if isinstance(block, Display) else ""  # what leads to a display stands on its slide
+            return f"{led}\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
         return written
 
 
-def _linked(display: str) -> str:
-    """Return a display whose rows that begin with a sign stay on the slide of those before them, while they fit there."""
-    rows, height = display.split("\n"), 0
+def linked(display: str) -> tuple[str, bool]:
+    """Return a display without a slide that begins with a sign, and whether it is one that may be broken.
+
+    The rows of a chain stay together while they fit on a slide; one of more begins again with its left side before a
+    sign of equality, and where there is none the display is to be made smaller.
+    """
+    rows, left, height, is_whole = display.split("\n"), "", 0, True
     for place, row in enumerate(rows):
         here = max([2 * ("frac" in row), *(part.count(r"\\") for part in _MATRIX.findall(row))]) + 1
-        height = height + here if _GOES_ON.match(row) else here
-        if height > here and height <= _LINES:
+        if not _GOES_ON.match(row):
+            left, height = row.partition("&")[0], here
+        elif height + here <= _LINES:
             rows[place - 1] = _ROW_END.sub(r"\\\\*\1", rows[place - 1])
-        elif height > _LINES:
-            height = here
-    return "\n".join(rows)
+            height += here
+        elif left and not row.startswith(r"&\quad"):
+            rows[place], height = f"{left}{row}", here
+        else:
+            is_whole = False
+    return "\n".join(rows), is_whole

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from datetime import date
+from json.encoder import encode_basestring
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.exact import Matrix
@@ -17,7 +18,7 @@ from symobs.tasks.result.in_convention import ResultInConvention
 from symobs.tasks.result.output_methods import signs, to_json
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from symobs.pages.page.sheet import Sheet
     from symobs.system import StateSpace
@@ -84,22 +85,20 @@ def given_up(document: Document, tasks: Sequence[str], method: str, signs: Mappi
 
 def _written(whole: Mapping[str, object]) -> str:
     """Return indented JSON."""
-    return "".join(_pieces(whole, "\n")) + "\n"
+    return _indented(whole, "\n") + "\n"
 
 
-def _pieces(value: object, line: str) -> Iterator[str]:
-    """Yield the text of `json.dumps(indent=2)`, by the fast encoder."""
-    if not isinstance(value, (dict, list, tuple)) or not value:
-        yield _encoded(value)
-        return
-    is_object, inner = isinstance(value, dict), line + "  "
-    entries = value.items() if isinstance(value, dict) else ((None, entry) for entry in value)
-    for place, (key, entry) in enumerate(entries):
-        yield (("{" if is_object else "[") if place == 0 else ",") + inner
-        if is_object:
-            yield f"{_encoded(key)}: "
-        yield from _pieces(entry, inner)
-    yield line + ("}" if is_object else "]")
+def _indented(value: object, line: str) -> str:
+    """Return the text of `json.dumps(indent=2)`, by the fast encoder."""
+    if isinstance(value, str):
+        return encode_basestring(value)
+    inner = line + "  "
+    if isinstance(value, dict) and value:
+        pairs = [f"{inner}{_encoded(key)}: {_indented(entry, inner)}" for key, entry in value.items()]
+        return f"{{{','.join(pairs)}{line}}}"
+    if isinstance(value, (list, tuple)) and value:
+        return f"[{','.join([inner + _indented(entry, inner) for entry in value])}{line}]"
+    return _encoded(value)
 
 
 _encoded = json.JSONEncoder(ensure_ascii=False).encode

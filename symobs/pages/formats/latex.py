@@ -211,7 +211,7 @@ class LatexWriter:
                 return self._picture(block)
             case CaseBlock(label, blocks):
                 first = _gap(Heading("", label), blocks[0]) if blocks else ""
-                body = LatexWriter(self.printer, inset=_INSET).body(blocks)
+                body = type(self)(self.printer, inset=_INSET).body(blocks)
                 return f"\\begin{{inset}}\n\\textbf{{{self.sentence(label)}}}{first}{body}\n\\end{{inset}}"
             case Columns():
                 return self._columns(block)

@@ -189,11 +189,8 @@ class MarkdownWriter:
             case TableBlock():
                 table, legend = markdown_table(block, self.printer, self.sentence, self.mathematics)
                 return "\n\n".join([table, self.sentence(block.where), self.display(legend)]) if legend else table
-            case PictureBlock(picture, _, title):
-                from symobs.pages.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
-
-                words = (*title, *caption(picture, self.printer.language, sketched=True))
-                return f"{self._sketch(picture)}\n\n{self.sentence(words)}"
+            case PictureBlock(picture, sketched=sketched):
+                return f"{self._sketch(picture)}\n\n{self.sentence(sketched)}"
             case AnswerSpace():  # nobody writes on it by hand
                 return ""
             case CaseBlock(label, blocks):

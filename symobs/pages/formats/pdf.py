@@ -56,6 +56,9 @@ _CLOSER = (
     r"\setcounter{enumi}{0}\par\nopagebreak\smallskip\noindent\footnotesize\textbf{#1}}{\par}"
     r"\ifdefined\tikzset\tikzset{closer/.style={scale=.65}}\fi"
 )
+#: Where that is not enough, pages are lower, so that the last one gets more: this part of it, or else the next.
+_WANTED = (0.35, 0.45)
+_LOWER = r"\dimen0=\textheight\textheight={part}\textheight\advance\dimen0-\textheight\advance\footskip\dimen0"
 _MEASURED = r"\AtEndDocument{\par\typeout{symobs fills \thepage, \the\pagetotal\space of \the\textheight}}"
 _WRITTEN = re.compile(r"^Output written on .*\((\d+) page", re.MULTILINE)
 _FILLED = re.compile(r"^symobs fills (\d+), ([\d.]+)pt of ([\d.]+)pt$", re.MULTILINE)
@@ -113,7 +116,14 @@ def compiled(
             if pages == floor(pages) or pages % 1 > _SHORTEST:
                 return loose
             closer, fewer = _typeset(source, _CLOSER, folder, commands, time_limit)
-            return closer if fewer <= floor(pages) else loose
+            if fewer <= floor(pages):
+                return closer
+            for wanted in _WANTED:
+                part = f"{pages / (floor(pages) + wanted):.3f}"
+                lower, more = _typeset(source, _LOWER.replace("{part}", part), folder, commands, time_limit)
+                if floor(pages) + _SHORTEST < more < floor(pages) + 1:
+                    return lower
+            return loose
     except OSError as error:
         reason = f"TeX could not be given a folder to work in: {error.strerror or error}"
         repair = "make room, or name another folder for temporary files in the variable TMPDIR"

@@ -150,15 +150,9 @@ class TextWriter:
                 table, legend = text_table(block, self.printer, self.remark)
                 below = f"\n\n{wrapped(self.sentence(block.where), width)}\n\n{indented(legend)}" if legend else ""
                 return f"{indented(table)}{below}"
-            case PictureBlock(picture, _, title):
-                from symobs.pages.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
-
-                plot = self._sketch(picture)
-                words = wrapped(
-                    self.sentence((*title, *caption(picture, self.printer.language, sketched=True))),
-                    width - len(INDENT),
-                )
-                return f"{indented(plot)}\n\n{indented(words)}"
+            case PictureBlock(picture, sketched=sketched):
+                words = wrapped(self.sentence(sketched), width - len(INDENT))
+                return f"{indented(self._sketch(picture))}\n\n{indented(words)}"
             case CaseBlock(label, blocks):
                 inside = TextWriter(self.printer, width - len(INDENT)).body(blocks)
                 return f"{wrapped(self.sentence(label), width)}\n{indented(inside)}"

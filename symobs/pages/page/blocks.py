@@ -116,11 +116,11 @@ class TableBlock:
 
 @dataclass
 class PictureBlock:
-    """A plot and its caption; `title` stands before every caption of it, the number of the figure and what it shows."""
+    """A plot and its caption; `sketched` is that of the plot in characters."""
 
     picture: Picture
     caption: Inlines
-    title: Inlines = ()
+    sketched: Inlines
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Conventions stated on a page, those of its letters, below its title."""
+"""Conventions stated on a page below its title: the signs of K and L, on every page with such a gain and on no other."""
 
 from __future__ import annotations
 
@@ -38,9 +38,10 @@ from symobs.proof.derivation import (
     Section,
     Tabulate,
 )
+from symobs.proof.derivation.steps import relations
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from symobs.formula.convention import Convention
     from symobs.formula.phrases.languages import Language
@@ -56,15 +57,15 @@ def letters_used(steps: Iterable[Step]) -> frozenset[str]:
 
 
 def stated_conventions(
-    used: frozenset[str], convention: Convention, words: Mapping[str, str]
+    used: frozenset[str], convention: Convention, words: Mapping[str, str], law: Relation | None = None
 ) -> tuple[tuple[Inline, ...], ...]:
-    """Return the conventions of the letters used, each as words and a formula."""
+    """Return the conventions of the gains used, each as words and a formula; `law` is the control law of the page."""
     turned = SignReversal(convention.turned)
     conventions: list[tuple[Inline, ...]] = []
-    if "K" in used:
+    if used & {"K", "K_r"}:
         estimated = "L" in used or "x_hat" in used
-        conventions.append((turned.relation(_control_law("x_hat" if estimated else "x")),))
-    if "L" in used:
+        conventions.append((law or turned.relation(_control_law("x_hat" if estimated else "x")),))
+    if used & {"L", "L_r"}:
         conventions.append((f"{words['observer_matrix']} ", turned.formula(_OBSERVER_MATRIX)))
         conventions.append((f"{words['error']} ", _ERROR))
     return tuple(conventions)
@@ -149,7 +150,7 @@ def title_of(document: Document, language: Language) -> Title:
     """Return the title of a page, with its source and the conventions that it states."""
     steps = [step for derivation in document.derivations for step in derivation.steps]
     asked, chosen = document.letters_asked, document.convention
-    conventions = stated_conventions(letters_used(steps) | asked, chosen, language.words)
+    conventions = stated_conventions(letters_used(steps) | asked, chosen, language.words, _law_of(steps))
     conventions += _meanings(asked, chosen, discrete=any(each.discrete for each in document.derivations))
     if not conventions:
         return Title(document.title, _as_sentence(document.source), ())
@@ -157,6 +158,14 @@ def title_of(document: Document, language: Language) -> Title:
     for convention in conventions:
         listed += [*convention, ", "]
     return Title(document.title, _as_sentence(document.source), joined((*listed[:-1], ".")))
+
+
+def _law_of(steps: Sequence[Step]) -> Relation | None:
+    """Return the control law that the steps state, u = −K x + k ξ; of several the one with the fewest letters."""
+    told = relations(tuple(steps))
+    laws = [each for each in told if each.members[0] == Letter("u") and "K" in letters(each.members[1])]
+    law = min(laws, key=lambda each: len(letters(each.members[1])), default=None)
+    return None if law is None else Relation(law.members[:2], law.operators[:1])
 
 
 def _as_sentence(text: str) -> str:

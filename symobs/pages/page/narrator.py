@@ -91,6 +91,7 @@ def narrate(document: Document) -> tuple[Block, ...]:
     is_cited = not is_final and document.references != "none"
     works, citations = cited_literature((step for steps in parts for step in steps) if is_cited else (), language)
     page = _PageBlocks(document.convention, language, citations=citations)
+    page.has_decimals = bool(digits)
     page.referred = dict.fromkeys((each for steps in parts for each in referred_to(steps)), 0)
     page.blocks.append(title_of(document, language))
     page.blocks += [Paragraph((" ".join(part.split()),)) for part in document.text.split("\n\n") if part.strip()]
@@ -221,12 +222,14 @@ class _PageBlocks:
         self.numbers = [0]
         self.numbered = True
         self.time: tuple[str, bool] | None = None
+        #: Whether the page is one of decimals.
+        self.has_decimals = False
 
     def inside(self, *, numbered: bool = True) -> _PageBlocks:
         """Return the blocks of a part set apart from the page: its data hold there only, its figures are counted on."""
         known = self.given, self.citations
         found = _PageBlocks(self.convention, self.language, given=known[0], citations=known[1], figures=self.figures)
-        found.numbered, found.referred = numbered, self.referred
+        found.numbered, found.referred, found.has_decimals = numbered, self.referred, self.has_decimals
         return found
 
     def emit(self, steps: Sequence[Step]) -> None:
@@ -362,8 +365,12 @@ class _PageBlocks:
             case Plot(picture=picture, sentence=sentence):
                 from symobs.pages.page.plot_captions import caption  # noqa: PLC0415 - only pages with pictures
 
-                title = joined((*self.figure_title(sentence), " "))
-                self.blocks.append(PictureBlock(picture, joined((*title, *caption(picture, self.language))), title))
+                title = (*self.figure_title(sentence), " ")
+                captions = (
+                    caption(picture, self.language, sketched=sketched, decimals=self.has_decimals)
+                    for sketched in (False, True)
+                )
+                self.blocks.append(PictureBlock(picture, *(joined((*title, *words)) for words in captions)))
             case CaseStep(when=when, steps=steps, sentence=sentence):
                 self.emit_case(when, steps, sentence)
             case Section() if _is_statement(step):

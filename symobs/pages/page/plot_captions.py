@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from symobs.exact import Matrix, Scalar
+from symobs.exact import Matrix, Scalar, decimal_places
 from symobs.formula.convention import STANDARD
 from symobs.formula.figures import (
     BodePicture,
@@ -19,7 +19,18 @@ from symobs.formula.figures import (
     TimeResponse,
 )
 from symobs.formula.phrases.languages import ENGLISH
-from symobs.formula.tree import Apply, At, Conjunction, Letter, Literal, Relation
+from symobs.formula.tree import (
+    Apply,
+    At,
+    Conjunction,
+    Decimals,
+    Formula,
+    Letter,
+    Literal,
+    Relation,
+    children,
+    with_children,
+)
 from symobs.pages.page.prose import filled, joined
 from symobs.proof.derivation import Sentence
 
@@ -28,7 +39,7 @@ if TYPE_CHECKING:
 
     from symobs.formula.figures import Curve, Drawn, PlottedResponse
     from symobs.formula.phrases.languages import Language
-    from symobs.formula.tree import Fact, Formula
+    from symobs.formula.tree import Fact
     from symobs.pages.page.blocks import Inline, Inlines
 
 #: With more equations than this, curves that are no boundary are left out.
@@ -36,17 +47,36 @@ _MOST_DIVIDERS = 4
 _UNSKETCHED = {"picture_samples", "picture_stable", "picture_unstable", "picture_dashed"}
 
 
-def caption(picture: Drawn, language: Language = ENGLISH, *, sketched: bool = False) -> Inlines:
-    """Return the caption of a plot; plots in characters have neither samples nor dashes."""
+def caption(picture: Drawn, language: Language = ENGLISH, *, sketched: bool = False, decimals: bool = False) -> Inlines:
+    """Return the caption of a plot; plots in characters have neither samples nor dashes.
+
+    With `decimals` numbers are decimals where these end.
+    """
     sentences = [said for said in _sentences(picture) if not (sketched and said.key in _UNSKETCHED)]
     if drawn_for := getattr(picture, "drawn_for", ()):
         values = tuple(_equation(name, value) for name, value in drawn_for)
         sentences.append(caption_sentence("drawn_for", values=Conjunction(values)))
     words: list[Inline] = []
-    for sentence in sentences:
+    for sentence in map(_in_decimals, sentences) if decimals else sentences:
         words += [" "] if words else []
         words += filled(sentence, STANDARD, language)
     return joined(words)
+
+
+def _in_decimals(part: Any) -> Any:
+    """Return a sentence, or a part of it, with the decimals of its numbers, 10.5 for 21/2."""
+    match part:
+        case Literal(Scalar() as value) if decimal_places(value):
+            return Decimals(value)
+        case tuple():
+            return tuple(map(_in_decimals, part))
+        case Relation(members, operators):
+            return Relation(_in_decimals(members), operators)
+        case Conjunction(relations):
+            return Conjunction(_in_decimals(relations))
+        case Sentence(key, slots):
+            return Sentence(key, _in_decimals(slots))
+    return with_children(part, _in_decimals(children(part))) if isinstance(part, Formula) else part
 
 
 def drawn(picture: RegionPicture) -> tuple[Curve, ...]:

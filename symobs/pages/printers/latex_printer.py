@@ -14,7 +14,7 @@ from symobs.ground.dataclass import dataclass
 from symobs.pages.printers import line_breaking as widths
 from symobs.pages.printers.glyphs import NO_RULES, GlyphBox, Level
 from symobs.pages.printers.line_breaking import Layout
-from symobs.pages.printers.printer import Printer
+from symobs.pages.printers.printer import ROWS_IN_A_LINE, Printer
 from symobs.pages.printers.rational_formula import digits_of
 
 if TYPE_CHECKING:
@@ -207,13 +207,13 @@ class LatexPrinter(Printer[LatexBox]):
         return LatexBox(width, Level.PRODUCT, source, argument.height)
 
     def matrix(self, rows: Sequence[Sequence[LatexBox]], rules: Rules = NO_RULES) -> LatexBox:
-        """Return a table in brackets; in running text small, or a list where it is wide."""
+        """Return a table in brackets; in running text small, or a list where it is wide or high."""
         if not self.running:
             rows = in_one_style(rows)
         columns = len(rows[0])
         width = sum(max(row[j].width for row in rows) for j in range(columns))
         width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
-        if self.running and width > _WIDE:
+        if self.running and (width > _WIDE or len(rows) > ROWS_IN_A_LINE):
             source = r";\allowbreak\ ".join(r",\allowbreak\ ".join(entry.source for entry in row) for row in rows)
             return LatexBox(width, Level.ATOM, f"[{source}]")
         body = under_one_another(["&".join(entry.source for entry in row) for row in rows], _heights(rows), rules[0])
@@ -355,7 +355,7 @@ def under_one_another(rows: Sequence[str], heights: Sequence[int], ruled: Sequen
     r"""Return rows joined by `\\`, with the depth that tall ones need below their strut: an array adds none by itself."""
     body = rows[0]
     for number, (row, above, below) in enumerate(zip(rows[1:], heights, heights[1:], strict=False), 1):
-        body += r"\\[12pt]" if above > 1 else r"\\[4pt]" if max(above, below) else r"\\"
+        body += rf"\\[{max(12, 3 * above)}pt]" if above > 1 else r"\\[4pt]" if max(above, below) else r"\\"
         body += (
             rf"\hline {row}\rule{{0pt}}{{2.4ex}}" if number in ruled else row
         )  # before -2 it would make a binary minus

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Generic
 from symobs.exact import Matrix, Scalar
 from symobs.formula.tree import (
     Apply,
+    At,
     Block,
     Derivative,
     Formula,
@@ -32,7 +33,7 @@ from symobs.formula.tree import (
 )
 from symobs.ground.dataclass import dataclass
 from symobs.pages.printers.glyphs import B, Level
-from symobs.pages.printers.printer import shifted, signed_terms
+from symobs.pages.printers.printer import shifted, signed_terms, with_zero
 from symobs.pages.printers.rational_formula import digits_of, is_leaf
 from symobs.pages.printers.scalar_formula import factors, formula_of, formula_of_matrix, is_number, partitioned
 
@@ -130,7 +131,24 @@ class Breaker(Generic[B]):
             case Derivative(operand, name):
                 first, *body = self._operand(operand, Level.FRACTION, room - 2)
                 return [replace(first, box=self.printer.rate(first.box, name)), *body]
+            case At():
+                return self._evaluated(formula, room)
         return [LinePiece(self.printer.typeset(formula))]
+
+    def _evaluated(self, formula: Formula, room: float) -> list[LinePiece[B]]:
+        """Return the pieces of a value at an instant, the bar behind the last one."""
+        printer, instants, operand = self.printer, dict[str, Scalar](), formula
+        while isinstance(operand, At):
+            instants = {operand.name: operand.instant, **instants}
+            operand = operand.operand
+        if isinstance(operand, Letter):
+            return [LinePiece(printer.typeset(formula))]
+        equations = printer.equations(instants)
+        nothing = printer.identity()
+        bar = printer.evaluated(nothing, equations).width - nothing.width
+        pieces = self._operand(operand, Level.POWER, room - bar)
+        *body, last = pieces if len(pieces) == 1 else self._between_parentheses(pieces)
+        return [*body, replace(last, box=printer.evaluated(last.box, equations))]
 
     def _written(self, formula: Formula) -> Formula:
         """Return the formula, an exact value spelled out."""
@@ -373,7 +391,7 @@ class Layout(Generic[B]):
 
     def rows(self, relations: Sequence[Relation]) -> tuple[list[DisplayRow[B]], bool]:
         """Return the rows, and whether they are aligned (else each is centred)."""
-        relations = [self._without_repetition(relation) for relation in relations]
+        relations = [self._without_repetition(with_zero(relation)) for relation in relations]
         if self.boxed and all("=" not in each.operators and {*each.operators} != {"≈"} for each in relations):
             return self._inequalities(relations)
         last = len(relations) - 1
@@ -392,8 +410,10 @@ class Layout(Generic[B]):
 
     def _without_repetition(self, relation: Relation) -> Relation:
         """Return a relation without members that are printed as the one before them: 3 · 1 beside 3."""
-        boxes = [replace(self._typeset(member), level=Level.SUM) for member in relation.members]
         members, operators = relation.members, relation.operators
+        if len(members) == 2:
+            return relation
+        boxes = [replace(self._typeset(member), level=Level.SUM) for member in members]
         kept = [i for i in range(len(members)) if i < 2 or operators[i - 1] != "=" or boxes[i] != boxes[i - 1]]
         return replace(
             relation,

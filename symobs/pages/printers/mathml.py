@@ -47,7 +47,7 @@ from symobs.pages.printers.latex_to_mathml import (
     text,
 )
 from symobs.pages.printers.line_breaking import Layout
-from symobs.pages.printers.printer import Printer
+from symobs.pages.printers.printer import ROWS_IN_A_LINE, Printer
 from symobs.pages.printers.rational_formula import digits_of
 
 if TYPE_CHECKING:
@@ -257,11 +257,11 @@ class MathmlPrinter(Printer[MathmlBox]):
         return MathmlBox(widths.source_width(form) + argument.width + 0.2, Level.PRODUCT, elements, argument.height)
 
     def matrix(self, rows: Sequence[Sequence[MathmlBox]], rules: Rules = NO_RULES) -> MathmlBox:
-        """Return a table in brackets; in running text small, or a list where it is wide."""
+        """Return a table in brackets; in running text small, or a list where it is wide or high."""
         columns = len(rows[0])
         width = sum(max(row[j].width for row in rows) for j in range(columns))
         width += (columns - 1) * widths.COLUMN_GAP + widths.BRACKETS
-        if self.running and width > _WIDE:
+        if self.running and (width > _WIDE or len(rows) > ROWS_IN_A_LINE):
             return _list_of(rows)
         body, size = "", LARGE * (not self.running and any(is_large(entry) for line in rows for entry in line))
         for below, line in enumerate(rows):

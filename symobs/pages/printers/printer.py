@@ -61,6 +61,11 @@ if TYPE_CHECKING:
     from symobs.formula.notation import LetterForm
     from symobs.formula.phrases.languages import Language
 
+#: Formulas that are kept in print from one answer to the next.
+_MOST_REMEMBERED = 4000
+#: In a line of text a column of more entries is a row, transposed, and a matrix of more rows a list.
+ROWS_IN_A_LINE = 2
+
 _BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -73,6 +78,9 @@ def _with_index(latex: str, index: str) -> str:
 
 class Printer(FormulaWriter[B]):
     """Formula → mathematics of one format."""
+
+    #: Whether mathematics is printed into a line of text.
+    running = False
 
     def __init__(
         self, variable: str = "s", symbols: Mapping[str, str] | None = None, *, discrete: bool = False
@@ -88,6 +96,13 @@ class Printer(FormulaWriter[B]):
         self.known = self.memory.setdefault(self.style, {})
         #: The entries named by stars so far, numbered through the page.
         self.stars: dict[Formula, int] = {}
+
+    def remember(self, memory: dict[tuple[object, ...], dict[Scalar | Formula, B]]) -> None:
+        """Go on with what another printer of the same letters has printed; a memory that is full begins anew."""
+        if sum(map(len, memory.values())) > _MOST_REMEMBERED:
+            memory.clear()
+        self.memory = memory
+        self.known = memory.setdefault(self.style, {})
 
     def keep_time(self, time: tuple[str, bool] | None) -> None:
         """Go on with this variable, in continuous or discrete time."""
@@ -143,6 +158,7 @@ class Printer(FormulaWriter[B]):
 
     def relation(self, item: Relation) -> B:
         """Print a chain of equations and comparisons."""
+        item = with_zero(item)
         parts = [self.typeset(item.members[0])]
         for operator, member in zip(item.operators, item.members[1:], strict=True):
             parts += [self.comparison(operator), self.typeset(member)]
@@ -390,11 +406,14 @@ class Printer(FormulaWriter[B]):
                 return self.called(self.letter(f"{name}_", ""), shown)
             case Letter(name) if not shows_time(name):
                 return self.called(self.letter(name, ""), [self.scalar(instant) for instant in instants.values()])
-        equations = [
-            self.joined([self.symbol(name), self.comparison("="), self.scalar(instant)], Level.SUM)
-            for name, instant in instants.items()
-        ]
-        return self.evaluated(self.at_least(Level.POWER, self.typeset(operand)), equations)
+        return self.evaluated(self.at_least(Level.POWER, self.typeset(operand)), self.equations(instants))
+
+    def equations(self, instants: Mapping[str, Scalar]) -> list[B]:
+        """Return what stands behind the bar: θ = π, ω = u = 0."""
+        shared: dict[Scalar, list[B]] = {}
+        for name, instant in instants.items():
+            shared.setdefault(instant, []).extend((self.symbol(name), self.comparison("=")))
+        return [self.joined([*names, self.scalar(instant)], Level.SUM) for instant, names in shared.items()]
 
     def called(self, function: B, arguments: Sequence[B]) -> B:
         """Return a function before its arguments in parentheses."""
@@ -407,17 +426,36 @@ class Printer(FormulaWriter[B]):
         """Return a matrix, entry by entry."""
         if 0 in matrix.shape:
             return self.empty(matrix.shape)
+        if self.running and matrix.shape[0] > ROWS_IN_A_LINE and matrix.shape[1] == 1:
+            return self.transposed(self.plain_matrix(matrix.T))
         return self.matrix([[self.scalar(entry) for entry in row] for row in matrix.rows])
 
     def block_entry(self, formula: Formula) -> B:
         """Return a block; a zero matrix among blocks is 0."""
-        if isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value.is_zero:
+        if is_zero_table(formula):
             return self.leaf(Scalar.of(0))
         return self.typeset(formula)
 
     def at_least(self, level: Level, box: B) -> B:
         """Parenthesise a box that binds less tightly."""
         return box if box.level >= level else self.grouped(box)
+
+
+def with_zero(relation: Relation) -> Relation:
+    """Return a relation with 0 for a zero matrix, M v = 0, but where a letter is that matrix."""
+    first = relation.members[0]
+    while isinstance(first, Derivative | Transpose):
+        first = children(first)[0]
+    if isinstance(first, Letter | Literal):
+        return relation
+    zero = Literal(Scalar.of(0))
+    members = (zero if is_zero_table(member) else member for member in relation.members[1:])
+    return replace(relation, members=(relation.members[0], *members))
+
+
+def is_zero_table(formula: Formula) -> bool:
+    """Return whether a formula is a matrix of zeros."""
+    return isinstance(formula, Literal) and isinstance(formula.value, Matrix) and formula.value.is_zero
 
 
 def shifted(formula: Formula) -> Formula:

@@ -177,11 +177,16 @@ def _fraction(value: Scalar) -> Formula:
 
 
 def _term_by_term(value: Scalar) -> Formula | None:
-    """Return 3p − b/J − R/H for (3HJp − bH − JR)/(HJ): a sum over a single product of letters, each term in lowest terms."""
+    """Return 3p − b/J − R/H for (3HJp − bH − JR)/(HJ): a sum over a single product of letters, each term in lowest terms.
+
+    Over a number l + 1/10 for (10l + 1)/10: some term with letters has to lose its denominator.
+    """
     below, terms = value.denominator.terms(), value.numerator.terms()
-    if len(below) > 1 or not below[0][1] or not 2 < len(terms) <= FACTORED_UP_TO:
+    if len(below) > 1 or not 1 < len(terms) <= FACTORED_UP_TO:
         return None
     ((divisor, under),) = below
+    if len(terms) == 2 if under else not any(powers and coefficient % divisor == 0 for coefficient, powers in terms):
+        return None
     parts: list[Formula] = []
     for coefficient, powers in human_order(terms):
         common = gcd(coefficient, divisor)

@@ -7,6 +7,7 @@ from math import isqrt
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import Scalar
+from symobs.exact.core.generators import function_named
 from symobs.formula.tree import Letter, Literal, Numeral, Relation, RoundedRoots
 from symobs.ground.dataclass import dataclass
 
@@ -157,6 +158,15 @@ def _size_of_imaginary(radicand: Scalar) -> Scalar | None:
     return size if size**2 == -radicand and len(tuple(size.terms())) == 1 else None
 
 
+def _outside(radicand: Scalar) -> Scalar:
+    """Return the product of the letters whose squares divide a polynomial."""
+    outside = Scalar.of(1)
+    for factor, power in radicand.numerator.factors()[1] if radicand.denominator.is_constant else ():
+        if len(factor.terms()) == 1 and not function_named(factor.terms()[0][1][0][0]):
+            outside = outside * factor ** (power // 2)
+    return outside
+
+
 def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs, *, paired: bool) -> str:
     """Return √radicand, its square factors before the root, i behind it: a pair ±√(−2k) is ±√(2k) i, whatever k is."""
     if not root.radicand.is_constant:
@@ -164,6 +174,12 @@ def _distance(root: Root, printer: Printer[Any], glyphs: RootGlyphs, *, paired: 
         if size is not None:
             # p i, not pi, which is another number
             return glyphs.written(printer, Literal(size)) + glyphs.space + glyphs.imaginary
+        square = _outside(root.radicand) if paired else Scalar.of(1)
+        if not square.is_one:  # ±√(ω²ζ² − ω²) is ±ω √(ζ² − 1), whatever the sign of ω is
+            inner = replace(root, radicand=root.radicand / square**2)
+            return (
+                glyphs.written(printer, Literal(square)) + glyphs.space + _distance(inner, printer, glyphs, paired=True)
+            )
         whole, below = root.radicand, root.radicand.denominator
         half = isqrt(below.fraction().numerator) if below.is_constant else 0
         if half > 1 and half**2 == below.fraction():

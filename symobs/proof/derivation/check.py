@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, TypeAlias, assert_never
 
 from symobs.exact import Ideal, Matrix, Scalar, TooLarge, product_of
 from symobs.exact.core.generators import stands_inside
+from symobs.exact.numerals.rounded_roots import are_rounded_roots
 from symobs.formula.phrases import ASSERTS, NAMING
 from symobs.formula.phrases.languages import SPOKEN
 from symobs.formula.tree import (
+    ROOT_DIGITS,
     Apply,
     Conjunction,
     Derivative,
@@ -30,6 +32,7 @@ from symobs.formula.tree import (
     Predicate,
     Relation,
     Roots,
+    RoundedRoots,
     Signal,
     SymbolList,
     evaluate,
@@ -301,6 +304,8 @@ def _fact(fact: Fact, environment: Environment, discrete: bool) -> None:  # noqa
             polynomial = monic(polynomial, environment.variable)
         if not are_roots(fact.values, polynomial, environment):
             reject(f"the roots of {polynomial} are {', '.join(map(str, fact.values))}")
+        if isinstance(fact, RoundedRoots) and not are_rounded_roots(fact.values, fact.texts, ROOT_DIGITS):
+            reject(f"that the roots are about {fact.texts}")
         return
     if isinstance(fact, HoldsExactlyWhere):
         _about_letters(fact.property.subject, environment)

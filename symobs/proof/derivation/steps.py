@@ -19,6 +19,7 @@ from symobs.formula.tree import (
     Predicate,
     Relation,
     Roots,
+    RoundedRoots,
     children,
 )
 from symobs.ground.dataclass import dataclass
@@ -192,7 +193,17 @@ Step: TypeAlias = (
 )
 
 #: What has parts of its own besides formulas.
-WITH_PARTS = (*get_args(Step), Sentence, Predicate, Roots, HoldsExactlyWhere, Conjunction, Relation, Evaluated)
+WITH_PARTS = (
+    *get_args(Step),
+    Sentence,
+    Predicate,
+    Roots,
+    RoundedRoots,
+    HoldsExactlyWhere,
+    Conjunction,
+    Relation,
+    Evaluated,
+)
 _PARTS: dict[Any, tuple[str, ...]] = {kind: tuple(part.name for part in fields(kind)) for kind in WITH_PARTS}
 
 

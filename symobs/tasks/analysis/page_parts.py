@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from symobs.exact import (
+    AlgebraicExtension,
     Factored,
     Matrix,
     Scalar,
@@ -20,7 +21,7 @@ from symobs.exact import (
     transfer,
 )
 from symobs.exact.algebraic.dead_time_margins import pade_error
-from symobs.exact.core.generators import NotWritten, exponentials_in, symbols_named
+from symobs.exact.core.generators import NotWritten, all_roots, exponentials_in, symbols_named
 from symobs.exact.numerals.written_digits import DATA_DIGITS
 from symobs.formula.tree import (
     Conjunction,
@@ -340,7 +341,11 @@ def is_narrow(*matrices: Matrix, within: int = _WIDEST) -> bool:
 
 
 def determinant_form(page: Builder, value: Scalar) -> Term:
-    """Return a determinant as its irreducible factors where it has several, else as it is."""
+    """Return a determinant as its irreducible factors where it has several, else as it is; the square of √x is x."""
+    for root in all_roots(value):
+        square = root.value**2 - root.argument  # 0 where the arithmetic knows it
+        if root.kind == "sqrt" and not square.is_zero and root.name not in value.denominator.names:
+            value = AlgebraicExtension(square, root.name).reduce(value)
     unit, factors = value.factors()
     if exponentials_in(value.denominator) or (len(factors) < 2 and all(power == 1 for _, power in factors)):
         return page.value(value)

@@ -48,11 +48,13 @@ def to_json(value: Any, symbols: Container[str] = ()) -> Any:
 
     Beside a symbol I the imaginary unit is sqrt(-1).
     """
+    if isinstance(value, (str, int, Scalar)):
+        return str(value) if isinstance(value, Scalar) else value
     if isinstance(value, Matrix):
         return [[str(entry) for entry in row] for row in value.rows]
     if isinstance(value, (Complex, Root, Shifted)) and "I" in symbols and "sqrt(-1)" not in str(value):
         return _IMAGINARY.sub("sqrt(-1)", str(value)) if "I" not in value.names else str(value)
-    if isinstance(value, (Scalar, Complex, Factored, Root, Shifted)):
+    if isinstance(value, (Complex, Factored, Root, Shifted)):
         return str(value)
     if isinstance(value, Condition):
         return f"{value.expression} {_RELATIONS[value.operator]} 0"

@@ -99,6 +99,18 @@ def test_a_last_page_is_drawn_in_where_little_stands_on_it(
     assert f"Line {displays - 1}." in words
 
 
+def test_a_last_page_that_stays_gets_more(require_tool: RequireTool, tmp_path: Path) -> None:
+    """68 lines of 12 pt are 1.13 pages of 60; with a third of the last page filled some 50 and 18 of them."""
+    begin = (ROOT / "latex_templates/article.tex").read_text("utf-8")
+    geometry = begin[begin.index(r"\usepackage[hmargin") :].partition("\n")[0]
+    told = r"\par ".join(f"Line {k}." for k in range(68))
+    source = rf"\documentclass[10pt,a4paper]{{article}}{geometry}\parindent=0pt\begin{{document}}{told}\end{{document}}"
+    first, last, rest = words_of(compiled(source), tmp_path, require_tool("pdftotext")).split("\f")
+    assert rest == ""
+    assert first.count("Line") + last.count("Line") == 68
+    assert last.count("Line") >= 15
+
+
 def test_plots_are_smaller_where_a_last_page_is_drawn_in(require_tool: RequireTool, tmp_path: Path) -> None:
     """A plot of 200 pt and displays of 520: at two thirds of its height a page holds both, at the whole height none does."""
     begin = (ROOT / "latex_templates/article.tex").read_text("utf-8")

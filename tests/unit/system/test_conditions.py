@@ -20,6 +20,7 @@ from symobs.system.conditions import (
     _product_sign,
     _sum_sign,
     never_zero,
+    of_open_sign,
     opposite,
     sign_of,
     vanishing_factors,
@@ -115,6 +116,22 @@ class TestValues:
         for point, number in values_at(value, signs):
             if number == 0 and not value.is_zero:
                 assert any(value_at(factor, point) == 0 for factor in factors), (value, signs, point)
+
+    @given(polynomials(degree=1, most=2), polynomials(degree=2, most=2), signs_of_names)
+    @settings(max_examples=60)
+    def test_what_is_left_has_the_sign_of_the_value(self, x: Twin, y: Twin, signs: dict[str, str]) -> None:
+        value = x.scalar**2 * y.scalar * a / (b + 7)
+        for point, number in values_at(value, signs):
+            left = value_at(of_open_sign(value, signs), point)
+            assert (left > 0) - (left < 0) == (number > 0) - (number < 0), (value, signs, point)
+
+    def test_factors_of_known_sign_are_left_out(self) -> None:
+        positive = {"a": "positive", "b": "positive"}
+        assert of_open_sign(a**2 * b**2 - a**2, positive) == b - 1
+        assert of_open_sign((1 - b) * -a, positive) == b - 1
+        assert of_open_sign((a**2 - b**2) / (2 * a), positive) == a - b
+        assert of_open_sign(a**2 - b**2, {}) == a**2 - b**2
+        assert of_open_sign(-a, positive) == -a
 
     @pytest.mark.parametrize(("text", "signs", "expected"), tables(Path(__file__))["known_signs"])
     def test_known_signs(self, text: str, signs: dict[str, str], expected: str) -> None:

@@ -200,8 +200,8 @@ export function mount(element, transport, options = {}) {
           drawPoint(got, asked);
           if (waiting || moving || got.status !== "done") continue;
         }
-        const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, step: isStep(), end: null, count: 129 } : undefined;
-        const more = { at, goal: s.goal, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases"), loop: open("loop") ? (moving ? "moving" : "rest") : "none" };
+        const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, step: isStep(), end: null, count: 129, fine: !moving } : undefined;
+        const more = { at, moving, goal: s.goal, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases"), loop: open("loop") ? (moving ? "moving" : "rest") : "none" };
         if (courses) more.courses = courses;
         const asked = question("answer"), got = await transport(asking("answer", more));
         if (got.id >= drawn || !got.id) drawAnswer(got, asked);
@@ -288,7 +288,7 @@ export function mount(element, transport, options = {}) {
   }
 
   function announce() {
-    if (!answer?.cards || isOld("answer") || Date.now() - said < 1000) return;
+    if (!answer?.cards || held !== null || isOld("answer") || Date.now() - said < 1000) return;
     said = Date.now();
     el.live.textContent = `${el.verdict.textContent}. ${answer.cards.filter((c) => /^[KLF]$/.test(c.name)).map((c) => c.says).join(". ")}`;
   }
@@ -994,7 +994,8 @@ export function mount(element, transport, options = {}) {
     }
     got.cards.forEach((card, k) => {
       const box = el.list.children[k].firstChild;
-      if (box.dataset.latex !== card.latex) { box.innerHTML = card.mathml; box.dataset.latex = card.latex; }
+      if (box.shown !== card.mathml) { box.innerHTML = card.mathml; box.shown = card.mathml; }
+      box.dataset.latex = card.latex ?? "";
     });
     const last = el.list.lastChild;
     last.innerHTML = got.conditions.length ? `<p>${w("provided")}</p>${got.conditions.map((c) => `<div class="display">${c.mathml}</div>`).join("")}` : "";

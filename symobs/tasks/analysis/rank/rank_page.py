@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from typing import TYPE_CHECKING, cast
 
-from symobs.exact import Matrix, roots_of, unit_rows
+from symobs.exact import Matrix, rank, roots_of, unit_rows
 from symobs.formula.phrases.languages import StateChoice
 from symobs.formula.tree import Conjunction, Roots
 from symobs.formula.tree.term import block
@@ -53,14 +53,24 @@ def given_here(page: Builder, result: RankResult) -> None:
 def write_test(page: Builder, letter: str, result: RankResult, kind: str) -> bool:
     """Define 𝒪 or 𝒞 block by block and say its rank; return whether it is known to be full for all parameters.
 
-    Of several outputs (inputs) n independent rows (columns) are enough where the rank is full.
+    Of several outputs (inputs) n independent rows (columns) are enough where the rank is full, and elsewhere the first
+    blocks that have the rank.
     """
     (row, of), order = (("C", "A") if kind == "observability" else ("B", "A")), page.plant.order
     across = kind == "controllability"
     whole = stacked(row, of, order, across=across)
     chosen = _enough(result)
     if not chosen:
-        page.define(letter, whole, say=f"{kind}_matrix")
+        blocks = _blocks_of_rank(result)
+        if blocks < order:
+            page.set(letter, page[whole].value)
+            first = page.define(f"{letter}_nu", stacked(row, of, blocks, across=across), say=f"first_blocks_{kind}")
+            power = page[of] ** blocks
+            parts = [first, power @ page[row] if across else page[row] @ power]
+            more = block([parts] if across else [[part] for part in parts])
+            page.conclude(f"later_blocks_{kind}", rank=relation(more.apply("rank"), first.apply("rank")))
+        else:
+            page.define(letter, whole, say=f"{kind}_matrix")
         return square_test(page, letter, result, kind)
     page.set(letter, page[whole].value)
     first = _chosen_rows(page, result, chosen, row, across=across)
@@ -102,6 +112,20 @@ def _enough(result: RankResult) -> tuple[int, ...]:
         if determinant and not vanishing_factors([determinant], result.plant.symbols.signs):
             return chosen
     return ()
+
+
+def _blocks_of_rank(result: RankResult) -> int:
+    """Return how many blocks of the test matrix have its rank; all of them where the whole matrix is shown."""
+    matrix, order = result.answer["matrix"], result.plant.order
+    width = matrix.shape[0] // order
+    if matrix.names or order <= WHOLE_UP_TO or width < 2 or result.piece is not None or result.verdict != "no":
+        return order
+    blocks = (count for count in range(1, order) if _rank_of(matrix, count * width) == result.answer["rank"])
+    return next(blocks, order)
+
+
+def _rank_of(matrix: Matrix, count: int) -> int:
+    return rank(matrix.select(range(count), range(matrix.shape[1])))
 
 
 def square_test(page: Builder, letter: str, result: RankResult, kind: str) -> bool:

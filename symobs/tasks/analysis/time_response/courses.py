@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import lcm
 from typing import TYPE_CHECKING, TypeAlias
 
 from symobs.formula.figures import PlottedResponse, TimeResponse
@@ -45,21 +44,25 @@ def plot_courses(
     if not is_slow(matrix.value, end / (2 * _STEPS[0])):  # a mode would turn unseen between two instants
         return
     start = tuple(part for parts in starts for part in parts)
+    drawn = [
+        (name, index if table.shape[0] > 1 else 0, row, dashed)
+        for name, table, dashed in signals
+        for index, row in enumerate(rows_of(table), 1)
+    ]
+    rows = [row for _, _, row, _ in drawn]
     for steps in _STEPS:
         try:
-            between = state_response(matrix.value, start, end / (2 * steps), 2 * steps + 1, _PARTS)
+            between = state_response(matrix.value, start, end / (2 * steps), 2 * steps + 1, _PARTS, rows)
         except ArithmeticError:
             return
-        courses = [
-            (name, index if table.shape[0] > 1 else 0, row, course(row, between), dashed)
-            for name, table, dashed in signals
-            for index, row in enumerate(rows_of(table), 1)
-        ]
-        made = tuple(PlottedResponse(name, at, row, course[::2], dashed) for name, at, row, course, dashed in courses)
+        made = tuple(
+            PlottedResponse(name, index, row, tuple(heights[::2]), dashed)
+            for (name, index, row, dashed), heights in zip(drawn, between, strict=True)
+        )
         window = window_of(end, made, _PARTS)
         if window[1][0] == window[1][1]:
             return
-        if all(_is_smooth(course, window[1]) for _, _, _, course, _ in courses):
+        if all(_is_smooth(heights, window[1]) for heights in between):
             page.plot(TimeResponse(states, starts, made, window, _PARTS), matrix, say=say, **slots)
             return
 
@@ -81,18 +84,6 @@ def window_of(end: Fraction, responses: Sequence[PlottedResponse], parts: int) -
 def rows_of(table: Matrix) -> list[tuple[Fraction, ...]]:
     """Return the rows of a matrix of numbers."""
     return [tuple(entry.fraction() for entry in row) for row in table.rows]
-
-
-def course(row: Sequence[Fraction], states: Sequence[Sequence[int]]) -> tuple[int, ...]:
-    """Return row · state, in whole parts, at all instants; `states` are the courses of the components of the state."""
-    common = lcm(*(part.denominator for part in row))
-    first, *others = [(int(part * common), state) for part, state in zip(row, states, strict=True) if part] or [
-        (0, states[0])
-    ]
-    total = first[1] if first[0] == 1 else [first[0] * value for value in first[1]]
-    for factor, state in others:
-        total = [value + factor * more for value, more in zip(total, state, strict=True)]
-    return tuple(total) if common == 1 else tuple([value // common for value in total])
 
 
 def rounded_up(value: float) -> Fraction:

@@ -26,8 +26,8 @@ from symobs.formula.tree.term import Term
 from symobs.ground.errors import CertificateRejected
 from symobs.proof.certificate.claims import Claim
 from symobs.proof.derivation import CaseStep
-from symobs.proof.derivation.builder import Builder, relation, sentence
-from symobs.system.conditions import Condition, opposite, sign_of, vanishing_factors
+from symobs.proof.derivation.builder import Builder, differs, relation, sentence
+from symobs.system.conditions import Condition, of_open_sign, opposite, sign_of, vanishing_factors
 from symobs.tasks.analysis.strata.loci import Locus
 from symobs.tasks.analysis.strata.strata import strata
 from symobs.tasks.result import Case, Result, holds
@@ -191,7 +191,10 @@ class DampingCases(Result):
 
         given(page)
         beyond = [c.expression for c in self.domain if c.operator == ">"]
-        beyond += [_plain(delta if sign == "positive" else -delta) for delta, sign in self.answer["taken"].items()]
+        taken = self.answer["taken"].items()
+        beyond += [
+            of_open_sign(delta if sign == "positive" else -delta, self.plant.symbols.signs) for delta, sign in taken
+        ]
         page.assume_positive(beyond)
 
     def write_branches(self, page: Builder, write_branch: Callable[[Builder, Any], None]) -> None:
@@ -208,9 +211,9 @@ class DampingCases(Result):
         zeros = vanishing_factors(map(self.plant.simplified, found), signs)
         steps = tuple(inner.steps)
         if factors := [factor for factor in zeros if factor not in ruled_out]:
-            apart = Conjunction(tuple(relation(factor, "!=", 0) for factor in factors))
+            apart = Conjunction(tuple(map(differs, factors)))
             steps = (CaseStep(apart, (), steps),)  # inside, what is told rests on it
-        page.steps += _narrowed(steps, chosen)
+        page.steps += _narrowed(steps, chosen, signs)
         page.steps += [_case(page, case, self.answer["chosen"], write_branch) for case in self.case_tree]
 
 
@@ -229,16 +232,18 @@ def _case(page: Builder, case: Case, doubled: Signs, write_branch: Callable[[Bui
     case.result.write_branches(inner, write_branch)
     steps = tuple(inner.steps)
     if condition.operator != "==":
-        return _narrowed(steps, case.when)[0]
+        return _narrowed(steps, case.when, page.plant.symbols.signs)[0]
     is_double = any((delta / condition.expression).denominator.is_constant for delta in doubled)
     because = sentence("branch_equal", {}) if is_double else None
     return CaseStep(stratum_of(case), tuple(case.substitution.items()), steps, because)
 
 
-def _narrowed(steps: tuple[Step, ...], conditions: Sequence[Condition]) -> tuple[Step, ...]:
-    """Return the steps under inequalities of discriminants, each within the one before."""
+def _narrowed(steps: tuple[Step, ...], conditions: Sequence[Condition], signs: Mapping[str, str]) -> tuple[Step, ...]:
+    """Return the steps under inequalities of discriminants, each within the one before; ζ < 1 for ω²ζ² − ω² < 0."""
+    from symobs.tasks.analysis.page_parts import as_written  # noqa: PLC0415
+
     for condition in reversed(conditions):
-        when = relation(condition.expression, condition.operator, 0)
+        when = as_written(replace(condition, expression=of_open_sign(condition.expression, signs)))
         steps = (CaseStep(when, (), steps, sentence(_BRANCHES[condition.operator], {})),)
     return steps
 

@@ -139,8 +139,7 @@ def _column(page: Builder, design: GainDesign, side: PlacementProblem) -> None:
     last = page.value(Matrix.unit(order, order - 1).T)
     chain = page.line(f"{gain} = {{last}} {test}^-1 {side.phi}_at({A}) = {{found}}", last=last, found=found)
     page.equal(chain, say=f"gain_{side.kind}", answer=side is FEEDBACK)
-    grouped = [] if desired.is_expanded else [page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped())))]
-    say_as_required(page, desired, _determinant(page, side), page.value(desired.polynomial), *grouped)
+    say_as_required(page, desired, _determinant(page, side), page.value(desired.polynomial))
 
 
 def _matrix(side: PlacementProblem) -> str:

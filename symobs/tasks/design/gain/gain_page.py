@@ -257,21 +257,19 @@ def _verified(page: Builder, design: GainDesign, side: PlacementProblem) -> None
     desired = design.desired
     assert desired is not None  # noqa: S101 - only designs with a desired polynomial come here
     polynomial = page[side.phi].value
-    grouped = desired.grouped()
-    members = [side.error_determinant(page), page.value(polynomial)]
-    if not desired.is_expanded and polynomial == desired.polynomial:
-        members.append(page.term(formula_of_factored(Factored(Scalar.of(1), grouped))))
-    say_as_required(page, desired, *members)
+    say_as_required(page, desired, side.error_determinant(page), page.value(polynomial))
     caution_poles(page, desired, side.phi, side.kind)
     if not desired.poles and not desired.is_numeric and polynomial == desired.polynomial:
         say_stability(page, side.error_determinant(page))
 
 
 def say_as_required(page: Builder, desired: DesiredPolynomial, *members: Term) -> None:
-    """Show the check of a gain; for a desired conjugate pair with the poles themselves.
+    """Show the check of a gain, the desired factors last; for a desired conjugate pair with the poles themselves.
 
     A gain with roots in it has the polynomial only as far as their own polynomials vanish: there the check says enough.
     """
+    if not desired.is_expanded and members[-1].value == desired.polynomial:
+        members = (*members, page.term(formula_of_factored(Factored(Scalar.of(1), desired.grouped()))))
     pairs = any(factor.degree(desired.variable) == _PAIR for factor in desired.factors)
     if not pairs or not desired.poles or not desired.is_numeric or members[0].value != members[1].value:
         page.verified("as_required", check=relation(*members))

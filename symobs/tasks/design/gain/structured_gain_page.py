@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from itertools import chain, combinations
+from itertools import chain, combinations, count, islice
+from math import isqrt
 from typing import TYPE_CHECKING
 
 from symobs.exact import Factored, Matrix, Scalar, rank
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
     from symobs.proof.derivation.builder import Builder
     from symobs.tasks.design.gain.gain_design import PlacementProblem
 
-#: Among so many entries so many are held at their values besides the zeros: at most 79 polynomials are factored.
-_UNKNOWN_UP_TO, _HELD_UP_TO = 12, 2
+#: Among so many entries some are held at their values besides the zeros: so many choices are looked at in all.
+_UNKNOWN_UP_TO, _TRIED = 12, 300
 
 
 def write_structured(
@@ -105,16 +106,37 @@ def _forms(
     variable = page.plant.variable
     if len(others) > _UNKNOWN_UP_TO:
         return
-    for held in chain.from_iterable(combinations(others, count) for count in range(_HELD_UP_TO + 1)):
+    fewest = max(0, len(others) - A.shape[0])  # as many letters as coefficients
+    choices = chain.from_iterable(combinations(others, held) for held in range(fewest, len(others)))
+    for held in islice(choices, _TRIED):
         fixed = [*zero, *held]
         letters = entry_letters(page, side.gain, value, _kept(fixed))
         names = letters.names - value.names
         fed = letters @ moved if side.is_dual else moved @ letters
+        if not _may_split(A, fed, names, variable):
+            continue
         polynomial = (A - fed).characteristic_polynomial(variable)
         parts = [(monic(factor, variable), power) for factor, power in polynomial.factors()[1]]
         apart = sum(len(factor.names & names) for factor, _ in parts) == len(names) > 0
         if apart and all(power == 1 and _is_solved_by_comparison(factor, names, variable) for factor, power in parts):
             yield fixed, parts, letters
+
+
+def _may_split(A: Matrix, fed: Matrix, letters: frozenset[str], variable: str) -> bool:
+    """Return whether, for numbers in place of all names, the polynomial splits or depends on the letters linearly."""
+    names = sorted(A.names | fed.names)
+    trial = {name: Scalar.of(number) for name, number in zip(names, _primes(), strict=False)}
+    polynomials = []
+    for factor in (0, 1, 2):
+        numbers = {name: number * (factor if name in letters else 1) for name, number in trial.items()}
+        polynomials.append((A.substitute(numbers) - fed.substitute(numbers)).characteristic_polynomial(variable))
+    nothing, once, twice = polynomials
+    return len(once.factors()[1]) > 1 or (twice - once - once + nothing).is_zero
+
+
+def _primes() -> Iterator[int]:
+    """Yield numbers that have no relation to each other."""
+    return (number for number in count(101) if all(number % divisor for divisor in range(2, isqrt(number) + 1)))
 
 
 def _parted(value: Matrix) -> tuple[list[Scalar], list[Scalar]]:

@@ -6,11 +6,12 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from symobs.exact import Matrix, Scalar, decimal_places
+from symobs.exact import Matrix, Scalar, decimal_places, roots_of
 from symobs.exact.core.generators import all_roots, function_named
 from symobs.exact.floating.riccati_check import excess, is_proved
 from symobs.exact.linear_algebra.krylov import Krylov
-from symobs.formula.tree import Decimals, Power
+from symobs.exact.numerals.written_digits import rounded_roots
+from symobs.formula.tree import ROOT_DIGITS, Decimals, Power, RoundedRoots
 from symobs.formula.tree.term import block
 from symobs.proof.certificate.claims import as_scalar
 from symobs.proof.derivation.builder import predicate, relation
@@ -272,10 +273,12 @@ def _tell_digits(page: Builder, result: OptimalGain) -> None:
     letter, digits = result.letter, result.decimals
     is_short, is_matched = page.plant.order <= _DRAWN_UP_TO, False
     if is_short and _tell_root_square(page, result):
+        _tell_roots(page)
         _tell_locus(page, *_problem(page, result)[2:])
         is_matched = _is_controllable(result) and _tell_unknown(page, result)
     elif is_short:
         _tell_pencil(page, *_problem(page, result))
+        _tell_roots(page)
     tables = {f"{name}_r": [[Fraction(entry) for entry in row] for row in digits[name]] for name in ("P", letter)}
     largest = max(abs(entry) for table in tables.values() for row in table for entry in row)
     fewest = max(_DIGITS - len(str(int(largest))), 1)
@@ -302,6 +305,17 @@ def _tell_digits(page: Builder, result: OptimalGain) -> None:
         power = page.term(Power(Decimals(Scalar.of(10)), 1 - len(str(1 / bound))))
         told = {"radius": radius, "bound": power if bound < unit else page.term(Decimals(Scalar.of(bound)))}
         page.conclude(f"optimal_rounded_{kind}", predicate("stable", chi), **told)
+
+
+def _tell_roots(page: Builder) -> None:
+    """Say the roots of c in decimals."""
+    variable, c = page.plant.variable, page["c_even"]
+    lead = c.scalar.coefficients(variable)[0]
+    subject = c if lead.is_one else -c if (-lead).is_one else page("{factor} c_even", factor=1 / lead)
+    roots = roots_of(subject.scalar, variable)
+    texts = rounded_roots(roots, ROOT_DIGITS)
+    if texts is not None:
+        page.remark("optimal_roots", roots=RoundedRoots(subject.formula, roots, texts))
 
 
 def _in_decimals(page: Builder, polynomial: Scalar) -> Term:

@@ -25,6 +25,7 @@ PHRASES: dict[str, str] = {
     "optimal_factor": "Its factor with all roots in the stable region is",
     "optimal_root": "where {root} and {positive}.",
     "optimal_next_root": "Further {root} and {positive}.",
+    "optimal_roots": "Its <root is|roots are> {roots}.",
     "optimal_weighted": "With the weight multiplied by a factor the product above is",
     "optimal_locus": "The symmetric root locus while the weight grows from 0 to the given one.",
     "optimal_roots_real": "The square roots are real and positive: on the boundary the polynomial above is not negative, and where the conditions hold it has no root there.",

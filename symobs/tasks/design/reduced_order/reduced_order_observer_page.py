@@ -305,8 +305,7 @@ def write_inner_gain(page: Builder, design: ReducedOrderObserver) -> None:
     define_gain(page, "L", *terms, design.answer["L"], say=key)
     compare_with_simple(page, design.inner, OBSERVER, *rest)
     page.in_decimals("L")
-    members = [_determinant(page), plain] if desired.is_expanded else [_determinant(page), plain, grouped]
-    say_as_required(page, desired, *members)
+    say_as_required(page, desired, _determinant(page), plain)
     caution_poles(page, desired, "phi_o", "observer")
 
 

@@ -33,6 +33,7 @@ from symobs.tasks.design.full_order.state_feedback import StateFeedbackDesign
 from symobs.tasks.design.gain.gain_cases import design_of, places_where
 from symobs.tasks.design.gain.gain_design import FEEDBACK, letters_of
 from symobs.tasks.design.gain.gain_kind import AssignedGain
+from symobs.tasks.design.gain.gain_page import say_as_required
 from symobs.tasks.design.gain.small_gain_page import compare_with_simple, small_gain_terms
 from symobs.tasks.design.gain.structured_gain_page import write_structured
 from symobs.tasks.design.named_gains import gain_letters
@@ -444,12 +445,10 @@ def _gains(page: Builder, design: IntegralAction) -> None:
     page.equal(relation(both, *terms, gain), say=say or ("hence_gain" if compared else "integral_gains"))
     compare_with_simple(page, design.loop, FEEDBACK, *whole)
     page.equal("K = #", "k_I = #", say="integral_parts", answer=True)
-    page.verified(
-        "as_required",
-        check=page.line("det(pencil(A_hat) + B_hat [K, -k_I]) = {polynomial}", polynomial=design.desired.polynomial),
-    )
+    loop = page["det(pencil(A_hat) + B_hat [K, -k_I])"]
+    say_as_required(page, design.desired, loop, page.value(design.desired.polynomial))
     if not design.desired.is_numeric:
-        say_stability(page, page["det(pencil(A_hat) + B_hat [K, -k_I])"])
+        say_stability(page, loop)
 
 
 def _both(page: Builder, gain: Matrix) -> Term:

@@ -40,7 +40,7 @@ _TEXT = {"type": "string"}
 _CARD = {
     "type": "object",
     "properties": {"name": _TEXT, "mathml": _TEXT, "latex": _TEXT, "says": _TEXT},
-    "required": ["name", "mathml", "latex", "says"],
+    "required": ["name", "mathml"],
 }
 _ERROR = {"type": "object", "required": ["where", "message", "repair"], "additionalProperties": _TEXT}
 _LINE = tables(Path(__file__))["line"]
@@ -200,10 +200,24 @@ def _decimal(entry: str) -> Any:
     return eval(entry, {"sqrt": mpmath.sqrt}) + mpmath.mpf(0)  # noqa: S307 - our own answer
 
 
+def test_what_moves_has_as_many_instants_as_were_asked_for_and_what_rests_those_it_needs() -> None:
+    fast = {**SERVO, "specification": {"control_poles": "-1, -20", "observer_poles": "-40, -40"}}
+    moving, resting = (asked(fast, moving=is_moving, courses={"fine": not is_moving}) for is_moving in (True, False))
+    coarse, fine = (found["courses"]["lines"] for found in (moving, resting))
+    assert {len(line["heights"]) for line in coarse} == {129}
+    step = (len(fine[0]["heights"]) - 1) // 128
+    assert step > 1
+    for slow, quick in zip(coarse, fine, strict=True):
+        assert all(abs(a - b) <= 1 for a, b in zip(slow["heights"], quick["heights"][::step], strict=True))
+    assert [card["mathml"] for card in moving["cards"]] == [card["mathml"] for card in resting["cards"]]
+    assert not any("latex" in card for card in moving["cards"])
+    assert all(card["latex"] and card["says"] for card in resting["cards"])
+
+
 @tabled
 def test_peak_and_settling_are_those_of_the_whole_response(poles: str) -> None:
     chain = {"A": "[0 1 0; 0 0 1; 0 0 0]", "C": "[1 0 0]"}
-    found = asked({"task": "observer", "plant": chain, "specification": {"poles": poles}}, courses={})
+    found = asked({"task": "observer", "plant": chain, "specification": {"poles": poles}}, courses={"fine": True})
     error = np.array([[float(Fraction(entry)) for entry in row] for row in found["result"]["A"]])
     end, count = float(found["courses"]["end"]), 40_001
     times = np.linspace(0, 2 * end, count)

@@ -27,6 +27,7 @@ from symobs.formula.tree import (
     Quotient,
     Relation,
     Roots,
+    RoundedRoots,
     Sum,
     Transpose,
 )
@@ -90,6 +91,18 @@ t = Scalar.symbol("t")
         (
             Roots(Letter("chi"), roots_of(s**2 + 3 * s + 2, "s")),
             Roots(Letter("chi"), roots_of(s**2 + 3 * s - 4, "s")),
+        ),
+        (
+            RoundedRoots(
+                Sum((Letter("chi"), literal(-3 * s - 4))),
+                roots_of(s**2 - 2, "s"),
+                (("1.4142", "", True), ("-1.4142", "", True)),
+            ),
+            RoundedRoots(
+                Sum((Letter("chi"), literal(-3 * s - 4))),
+                roots_of(s**2 - 2, "s"),
+                (("1.4142", "", True), ("-1.4143", "", True)),
+            ),
         ),
         (
             Roots(Power(Letter("chi"), -1), roots_of(s**2 + 3 * s + 2, "s")),

@@ -104,12 +104,20 @@ def test_a_response_is_found_to_one_part_whatever_bits_it_begins_with(
 
     monkeypatch.setattr(writer, "_BITS", (bits, 1024))
     table = Matrix.of([[999, -1000, 0], [1000, -1001, 0], [0, 0, rate]])
-    found = state_response(table, (Fraction(1), Fraction(0), Fraction(1, 3)), Fraction(1, 100), 601, 10**15)
+    start = Fraction(1), Fraction(0), Fraction(1, 3)
+    found = state_response(table, start, Fraction(1, 100), 601, 10**15)
+    rows = [[Fraction(10**6), Fraction(-(10**6), 3), Fraction(0)], [Fraction(-2), Fraction(1, 7), Fraction(5)]]
+    seen = state_response(table, start, Fraction(1, 100), 601, 10**15, rows)
     with mpmath.workdps(120):
         for k in range(0, 601, 25):
             t = mpmath.mpf(k) / 100
             true = mpmath.exp(-t) * (1 + 1000 * t), mpmath.exp(-t) * 1000 * t, mpmath.exp(rate * t) / 3
             assert all(abs(line[k] - 10**15 * value) <= 1 for line, value in zip(found, true, strict=True))
+            for row, line in zip(rows, seen, strict=True):
+                value = sum(
+                    mpmath.mpf(part.numerator) / part.denominator * x for part, x in zip(row, true, strict=True)
+                )
+                assert abs(line[k] - 10**15 * value) <= 1
 
 
 def test_errors_add_up_side_by_side_and_the_larger_counts_one_above_the_other() -> None:
