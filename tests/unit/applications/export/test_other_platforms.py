@@ -276,7 +276,7 @@ _OF_MATHML_3 = {
 }
 
 
-@pytest.mark.parametrize("name", ["deadbeat_observer", "time_varying_rotation", "unknown_input_not_decoupled"])
+@pytest.mark.parametrize("name", ["disturbance_not_seen", "time_varying_rotation", "unknown_input_not_decoupled"])
 def test_formulas_of_items_have_the_attributes_of_mathml_3(name: str) -> None:
     for platform in ("qti", "qti21"):
         item = item_of(held(name), platform)
