@@ -42,8 +42,8 @@ _TALL, _MATRIX = 6, re.compile(r"\\begin\{bmatrix\}(.*?)\\end\{bmatrix\}", re.DO
 _ROW_END, _GOES_ON, _LINES = re.compile(r"\\\\(\[3pt\])?$"), re.compile(r"&(=|\\approx|\\quad)"), 10
 #: What keeps two blocks together, a list before the second one, too.
 _KEPT, _INSET, _UNPARTED = "\n\\nopagebreak\n", r"\end{inset}", r"\csname @endparpenalty\endcsname=10000"
-#: So many references fit below what is before them; what is not broken has no room below it.
-_FEW, _UNBROKEN = 5, (Columns, Drawing, PictureBlock, TableBlock)
+#: So many references fit below what is before them, and below what is not broken.
+_FEW, _FEW_BELOW, _UNBROKEN = 5, 3, (Columns, Drawing, PictureBlock, TableBlock)
 
 
 @output_format
@@ -142,7 +142,7 @@ def _is_sentence(body: Sequence[Block]) -> bool:
 def _is_no_slide(before: Block, last: Block) -> bool:
     """Return whether the end of a frame stays with what is before it: a sentence, and a short list of references."""
     if isinstance(last, References):
-        return len(last.entries) <= _FEW and not isinstance(before, _UNBROKEN)
+        return len(last.entries) <= (_FEW_BELOW if isinstance(before, _UNBROKEN) else _FEW)
     return isinstance(last, Paragraph | Verified | Caution)
 
 
