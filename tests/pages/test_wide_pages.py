@@ -314,3 +314,12 @@ def test_bases_have_no_common_factors_and_begin_positively() -> None:
         assert next(number for number in numbers if number) > 0
     page = str(symobs.pbh(plant).to("text"))
     assert "⎡ 1⎤\n        ⎡A - λ I⎤ ⎢-2⎥ = 0" in page
+
+
+def test_references_stay_with_the_figure_or_the_display_before_them_on_a_slide() -> None:
+    """The last frame of an observer ends with a figure, that of an observer of an unknown input with a display."""
+    for name, end in (("third_order_at_zeros", "endparpenalty"), ("motor_unknown_load", "postdisplaypenalty")):
+        slides = str(render(document_of(name), "beamer"))
+        before, _, after = slides.rpartition("\\par\\nopagebreak\n\\begin{fitted}\n\\begin{references}")
+        assert after
+        assert rf"{end}" in before.rpartition("\\begin{frame}")[2]
