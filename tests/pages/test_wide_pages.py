@@ -302,3 +302,24 @@ def test_both_gains_of_integral_action_stand_in_one_display() -> None:
     page = str(render(document_of("cruise_control_integral_action"), "latex"))
     (display,) = (part for part in re.findall(r"\\\[.*?\\\]", page) if r"K=\answer" in part)
     assert r"\qquad k_{\mathrm I}=\answer" in display
+
+
+def test_bases_have_no_common_factors_and_begin_positively() -> None:
+    """Of this plant (1, -2, 0) and e₃ are hidden, by hand; the reached part is the whole space."""
+    plant = symobs.StateSpace("[0 1 0; -2 -3 0; 0 0 1]", "[0; 1; 1]", "[2 1 0]")
+    inverse = symobs.decomposition(plant).T.inv()
+    for place in range(3):
+        numbers = [int(entry) for entry in inverse.col(place)]
+        assert np.gcd.reduce(numbers) == 1
+        assert next(number for number in numbers if number) > 0
+    page = str(symobs.pbh(plant).to("text"))
+    assert "⎡ 1⎤\n        ⎡A - λ I⎤ ⎢-2⎥ = 0" in page
+
+
+def test_references_stay_with_the_figure_or_the_display_before_them_on_a_slide() -> None:
+    """The last frame of an observer ends with a figure, that of an observer of an unknown input with a display."""
+    for name, end in (("third_order_at_zeros", "endparpenalty"), ("motor_unknown_load", "postdisplaypenalty")):
+        slides = str(render(document_of(name), "beamer"))
+        before, _, after = slides.rpartition("\\par\\nopagebreak\n\\begin{fitted}\n\\begin{references}")
+        assert after
+        assert rf"{end}" in before.rpartition("\\begin{frame}")[2]

@@ -54,6 +54,8 @@ _COMPONENTS = ("path", "path 2", "path 3", "path 4")
 _BESIDE_ESTIMATE = {False: ("path", "state 2", "state 3"), True: ("estimate", "estimate 2", "estimate 3")}
 #: Signals whose largest values differ by more than this factor have an axis each, of this height and distance.
 _ONE_AXIS, _PANEL, _BETWEEN_PANELS = 4, 48.0, 26.0
+#: From so many signals on the panels stand in two columns, so far apart.
+_TWO_COLUMNS, _BETWEEN_COLUMNS = 5, 44.0
 #: The height of a panel over the logarithm of the frequency.
 _DECADES = 84.0
 _SIGNS = {"stable": "dot", "unstable": "cross", "excluded": "ring"}
@@ -400,7 +402,8 @@ def _panels(picture: TimeResponse, measure: Measure) -> Scene:
     for response in picture.responses:
         low, high = (bound(0, bound(response.heights)) / picture.parts for bound in (min, max))
         panels.append((name_of(response), (low, high), drawn_in(response)))
-    return _stacked(_decimal(picture.window[0]), time_axis(picture), panels, measure)
+    columns = 2 if len(panels) >= _TWO_COLUMNS else 1
+    return _stacked(_decimal(picture.window[0]), time_axis(picture), panels, measure, columns=columns)
 
 
 def _stacked(
@@ -411,24 +414,28 @@ def _stacked(
     *,
     decades: bool = False,
     beside: Sequence[Sequence[_Mark]] = (),
+    columns: int = 1,
 ) -> Scene:
     """Return panels one below the other over one horizontal axis, of logarithms with `decades`, with marks in each."""
     strokes: list[Stroke] = []
     texts: list[TextLabel] = []
     size = _DECADES if decades else _PANEL
-    for row, (name, (low, high), lines) in enumerate(reversed(panels)):
-        up = row * (size + _BETWEEN_PANELS)
+    rows, width = -(-len(panels) // columns), (WIDEST - (columns - 1) * _BETWEEN_COLUMNS) / columns
+    for place, (name, (low, high), lines) in enumerate(panels):
+        column, row = divmod(place, rows)
+        right, up = column * (width + _BETWEEN_COLUMNS), (rows - 1 - row) * (size + _BETWEEN_PANELS)
+        is_lowest = row == rows - 1 or place == len(panels) - 1
         room = (high - low) / 20
-        frame = Frame(window, (low - room, high + room), WIDEST, size)
+        frame = Frame(window, (low - room, high + room), width, size)
         axes, written = _axes(frame, (symbol(axis), name), measure, decades=decades)
         runs = [Stroke(line, "zero") for line in _zero_lines(frame)] + axes
         runs += [Stroke(line, "path") for line in lines(frame)]
-        for style, points in beside[-1 - row] if beside else ():
+        for style, points in beside[place] if beside else ():
             runs += [Stroke(line, style) for line in frame.lines(points)]
-        strokes += [replace(run, points=tuple((x, y + up) for x, y in run.points)) for run in runs]
-        shown = written if not row else [text for text in written if text.anchor != "north" and text is not written[0]]
-        texts += [replace(text, place=(text.place[0], text.place[1] + up)) for text in shown]
-    height = len(panels) * (size + _BETWEEN_PANELS) - _BETWEEN_PANELS
+        strokes += [replace(run, points=tuple((x + right, y + up) for x, y in run.points)) for run in runs]
+        shown = [text for text in written if is_lowest or (text.anchor != "north" and text is not written[0])]
+        texts += [replace(text, place=(text.place[0] + right, text.place[1] + up)) for text in shown]
+    height = rows * (size + _BETWEEN_PANELS) - _BETWEEN_PANELS
     whole = whole_of(strokes, texts, measure)
     return Scene(Rectangle(0.0, 0.0, WIDEST, height), whole, (), tuple(strokes), (), (), tuple(texts))
 

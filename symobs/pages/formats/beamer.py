@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from symobs.formula.phrases.languages import Language, language_named
-from symobs.pages.formats.latex import LatexWriter, has_drawings, head_of
+from symobs.pages.formats.latex import END_OF_FIGURE, KEPT_END_OF_FIGURE, LatexWriter, has_drawings, head_of
 from symobs.pages.formats.templates import fill
 from symobs.pages.page.blocks import (
     AnswerSpace,
@@ -41,9 +41,9 @@ _TALL, _MATRIX = 6, re.compile(r"\\begin\{bmatrix\}(.*?)\\end\{bmatrix\}", re.DO
 #: The end of a row, and the beginning of one that goes on with a sign: they stay on one slide of so many lines.
 _ROW_END, _GOES_ON, _LINES = re.compile(r"\\\\(\[3pt\])?$"), re.compile(r"&(=|\\approx|\\quad)"), 10
 #: What keeps two blocks together, a list before the second one, too.
-_KEPT, _INSET, _UNPARTED = "\n\\nopagebreak\n", r"\end{inset}", r"\csname @endparpenalty\endcsname=10000"
-#: So many references fit below what is before them; what is not broken has no room below it.
-_FEW, _UNBROKEN = 5, (Columns, Drawing, PictureBlock, TableBlock)
+_KEPT, _INSET, _UNPARTED = "\n\\par\\nopagebreak\n", r"\end{inset}", r"\csname @endparpenalty\endcsname=10000"
+#: So many references fit below what is before them; what is not broken.
+_FEW, _UNBROKEN = 12, (Columns, Drawing, PictureBlock, TableBlock)
 
 
 @output_format
@@ -139,10 +139,10 @@ def _is_sentence(body: Sequence[Block]) -> bool:
     return len(body) == 1 and isinstance(body[0], Paragraph | Verified)
 
 
-def _is_no_slide(before: Block, last: Block) -> bool:
+def _is_no_slide(last: Block) -> bool:
     """Return whether the end of a frame stays with what is before it: a sentence, and a short list of references."""
     if isinstance(last, References):
-        return len(last.entries) <= _FEW and not isinstance(before, _UNBROKEN)
+        return len(last.entries) <= _FEW
     return isinstance(last, Paragraph | Verified | Caution)
 
 
@@ -153,11 +153,13 @@ class _SlideWriter(LatexWriter):
         """Return the template values of a frame."""
         self.printer.keep_time(heading.time)
         parts = [tuple(body)]
-        while len(parts[0]) > 1 and _is_no_slide(*parts[0][-2:]):
+        while len(parts[0]) > 1 and _is_no_slide(parts[0][-1]):
             if len(parts) > 1 and isinstance(parts[0][-2], _UNBROKEN):
                 break  # a figure leaves room for one of them
             parts[:1] = [parts[0][:-1], parts[0][-1:]]
-        written = _KEPT.join(map(self.body, parts)).replace(_INSET + _KEPT, rf"{_UNPARTED} {_INSET}{_KEPT}")
+        *front, last = map(self.body, parts)
+        kept = [*map(_kept_with_next, front), last]
+        written = _KEPT.join(kept).replace(_INSET + _KEPT, rf"{_UNPARTED} {_INSET}{_KEPT}")
         return {"title": self.sentence(heading.inlines).removesuffix("."), "body": written}
 
     def block(self, block: Block) -> str:
@@ -173,6 +175,20 @@ class _SlideWriter(LatexWriter):
             led = "\\nopagebreak\n" if isinstance(block, Display) else ""  # what leads to a display stands on its slide
             return f"{led}\\begin{{fitted}}\n{written}\n\\end{{fitted}}"
         return written
+
+
+def _kept_with_next(body: str) -> str:
+    """Return blocks without a break after the display or the figure at their end."""
+    front, figure, end = body.rpartition(END_OF_FIGURE)
+    if figure and end == "\n\\end{fitted}":
+        return f"{front}{KEPT_END_OF_FIGURE}{end}"
+    if body.endswith(r"\]"):
+        return body.removesuffix(r"\]") + r"\postdisplaypenalty=10000 \]"
+    for name in ("align*", "gather*"):
+        if body.endswith(rf"\end{{{name}}}"):
+            front, _, display = body.rpartition(rf"\begin{{{name}}}")
+            return rf"{front}{{\postdisplaypenalty=10000 \begin{{{name}}}{display}}}"
+    return body
 
 
 def linked(display: str) -> tuple[str, bool]:

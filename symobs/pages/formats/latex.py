@@ -164,7 +164,7 @@ class LatexWriter:
         gaps = [_gap(before, after) for before, after in pairwise(blocks)]
         for place in range(1, len(blocks)):
             if isinstance(blocks[place], References):  # no page begins with them: they stay with a figure, too
-                pieces[place - 1] = pieces[place - 1].replace(_END_OF_FIGURE, _KEPT_END_OF_FIGURE)
+                pieces[place - 1] = pieces[place - 1].replace(END_OF_FIGURE, KEPT_END_OF_FIGURE)
         for place in range(1, len(blocks) - 1):
             if led := self._led_in(*blocks[place - 1 : place + 2]):
                 pieces[place : place + 2], gaps[place] = ("", led), ""
@@ -266,8 +266,8 @@ def _in_column(text: str, blocks: Sequence[Block], part: float) -> str:
     return rf"\begin{{minipage}}[t]{{{part}\linewidth}}\raggedright{before}{text}\par\kern{after}\end{{minipage}}"
 
 
-_END_OF_FIGURE = r"\end{center}}"
-_KEPT_END_OF_FIGURE = r"\csname @endparpenalty\endcsname=10000 \end{center}}"
+END_OF_FIGURE = r"\end{center}}"
+KEPT_END_OF_FIGURE = r"\csname @endparpenalty\endcsname=10000 \end{center}}"
 
 
 def _kept_with_next(display: str) -> str:

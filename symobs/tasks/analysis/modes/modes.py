@@ -460,7 +460,9 @@ def _at(page: Builder, result: ModeResult, part: Eigenvalues, rank: int, conditi
     kernel: Matrix = part.witness[2]  # type: ignore[index]
     shown = kernel.shape[1] if _are_independent(kernel, on_stratum(when, {}, page.environment)) else 0
     for j in range(shown):
-        v = page.value(kernel.select(range(page.plant.order), [j]))
+        vector = kernel.select(range(page.plant.order), [j])
+        first = next((entry for entry in vector.entries if entry), Scalar.of(1))
+        v = page.value(-vector if first.is_constant and first.fraction() < 0 else vector)
         zero = Matrix.zeros(part.matrix.shape[0], 1)
         image = relation(v.T @ pencil, zero.T) if dual else relation(pencil @ v, zero)
         low = sentence(f"pbh_low_{result.kind}", {"rank": Evaluated(ranks.members[0], ranks.members[-1])})

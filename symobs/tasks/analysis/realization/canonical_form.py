@@ -22,6 +22,7 @@ from symobs.exact import (
     independent_rows,
     kernel,
     modulo,
+    primitive,
     transfer,
 )
 from symobs.exact.linear_algebra.modal_matrix import cyclic_vector, modal_matrix
@@ -402,11 +403,11 @@ def basis(A: Matrix, B: Matrix, C: Matrix, ideal: Ideal | None = None) -> tuple[
     O = modulo(power_rows(A, C), ideal)
     hidden = kernel(O, ideal)
     both = (R @ kernel(O @ R, ideal)).normal() if R.shape[1] else Matrix.zeros(order, 0)
-    both = _primitive(modulo(both, ideal))
+    both = modulo(both, ideal)
     seen = _extension(both, _unit_first(R, ideal), ideal)
     rest_hidden = _extension(_beside(both, seen), hidden, ideal)
     others = _extension(_beside(both, seen, rest_hidden), Matrix.identity(order), ideal)
-    parts = (seen, both, others, rest_hidden)
+    parts = [_primitive(part) for part in (seen, both, others, rest_hidden)]
     return _beside(*parts).normal(), tuple(part.shape[1] for part in parts)
 
 
@@ -426,11 +427,13 @@ def _unit_first(R: Matrix, ideal: Ideal | None) -> Matrix:
 
 
 def _primitive(vectors: Matrix) -> Matrix:
-    """Return each column without its common denominator."""
-    columns = [vectors.select(range(vectors.shape[0]), [j]) for j in range(vectors.shape[1])]
-    if not columns:
-        return vectors
-    return _beside(*((column * column.common_denominator()).normal() for column in columns))
+    """Return each column as polynomials without common factor, its first one beginning with a positive coefficient."""
+    columns = []
+    for column in vectors.T.rows:
+        entries = primitive(column)
+        first = next((entry for entry in entries if entry), Scalar.of(1))
+        columns.append(entries if first.terms()[0][0] > 0 else [-entry for entry in entries])
+    return Matrix.of([list(row) for row in zip(*columns, strict=True)], len(columns)) if columns else vectors
 
 
 def _extension(given: Matrix, candidates: Matrix, ideal: Ideal | None) -> Matrix:

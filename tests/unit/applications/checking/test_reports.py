@@ -55,7 +55,7 @@ def _body(page: str) -> str:
     return re.sub(r"<[a-z][^>]*>", lambda tag: tag[0].split()[0] + ">", page.rpartition("</style>")[2])
 
 
-_POLYNOMIAL = re.compile(r"\bs\*\*|\bs\^[0-9]|<msup><mi>s</mi>")
+_POLYNOMIAL = re.compile(r"\bs\*\*|\bs\^[0-9]|<mn>[0-9]+</mn></msup>")
 
 
 def _given_away(report: CheckReport, right: str, handed_in: str) -> list[str]:
