@@ -38,6 +38,7 @@ from symobs.system.specification import (
     read_quantity,
 )
 from symobs.system.transfer_function_text import read_transfer_function
+from symobs.tasks.analysis.linearisation_page import ask_to_linearise
 from symobs.tasks.analysis.page_parts import formula_of_factored, given, state_signs
 from symobs.tasks.analysis.time_response.horizons import INFINITE, read_horizon
 from symobs.tasks.result import Document
@@ -111,6 +112,8 @@ def question_of(problem: Problem) -> Question:
     _state_data(page, asked)
     parts: dict[str, tuple[str, ...]] = {}
     with page.section("tasks" if len(asked) > 1 else "task"):
+        if problem.plant.nonlinear is not None and problem.plant.nonlinear.equilibrium:
+            ask_to_linearise(page)
         for place, (task, values) in enumerate(asked):
             if len(asked) > 1:
                 page.remark("part", letter=_letter_of(place))

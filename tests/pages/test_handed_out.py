@@ -326,3 +326,9 @@ def test_a_sheet_without_a_file_has_no_head() -> None:
     sheet = Sheet("T", (SheetEntry(1, "f", "t"),))
     assert sheet.header == Header()
     assert (sheet.heading, sheet.course, sheet.facts, sheet.fields, sheet.totals) == ("T", "", (), (), ())
+
+
+@pytest.mark.parametrize("name", ["text", "latex", "html", "markdown"])
+def test_a_source_stands_once_on_a_sheet_of_questions_and_solutions(name: str, folder: Path) -> None:
+    assert written(folder, "", "--format", name).count("Another book") == 1
+    assert written(folder, "", "--solutions", "--format", name).count("Another book") == 1

@@ -272,6 +272,8 @@ class Exercise:
     parts: tuple[ExportedPart, ...]
     question: dict[str, Any]
     problem_text: str = ""
+    #: The name of its file where several are exported together: refusals begin with it.
+    file: str = ""
 
     @property
     def title(self) -> str:
@@ -339,6 +341,11 @@ def exercises(
         except InputError as error:
             errors += _named(error, path, several=len(paths) > 1)
             continue
+        except UsageError as error:
+            error.where = placed(path.name if len(paths) > 1 else "", error.where)
+            raise
+        if len(paths) > 1:
+            exercise = replace(exercise, file=path.name)
         named = str(path.parent.resolve()) if is_variant else exercise.title
         found.append((exercise.structure + named, exercise))
     if errors:
@@ -355,8 +362,18 @@ def _named(error: InputError, path: Path, *, several: bool) -> list[SymobsError]
     if not several:
         return list(errors)
     return [
-        InputError(each.message, where=f"{path.name}, {each.where}".rstrip(", "), repair=each.repair) for each in errors
+        InputError(
+            each.message,
+            where=each.where if each.where == shown(str(path), 200) else placed(path.name, each.where),
+            repair=each.repair,
+        )
+        for each in errors
     ]
+
+
+def placed(file: str, where: str) -> str:
+    """Return a place in a file, by its name where it has one."""
+    return ", ".join(filter(None, (file, where)))
 
 
 # -- files ------------------------------------------------------------------------------------------------------------

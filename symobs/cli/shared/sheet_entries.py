@@ -216,6 +216,8 @@ def _worked_out(entry: SheetEntry, asked: SheetProblem, text: str, wanted: Wante
                 shown = replace(document, handout=(steps,))
             elif wanted.is_exam and wanted.questions:  # it stands below its question
                 shown = replace(document, source="", text="", is_below=True)
+            elif wanted.questions:  # which say where they come from
+                shown = replace(document, source="")
             entry = replace(entry, solution=_part(shown, replace(wanted, web=of_problem(wanted.web, data))))
         if wanted.questions and wanted.final_answers:
             entry = replace(entry, answer=_part(document, replace(wanted, detail=FINAL, web=wanted.web.of_question)))

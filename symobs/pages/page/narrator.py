@@ -99,6 +99,8 @@ def narrate(document: Document) -> tuple[Block, ...]:
     page.emit_given(together)
     if is_final:  # the question has said what is given, and where it comes from
         page.blocks[:] = [replace(title_of(document, language), source="")]
+    elif document.is_below and any(map(_derives, together)):  # what the question has not said
+        page.blocks[0] = Title(document.title, "", ())
     elif document.is_below:
         page.blocks[:] = [Title(document.title, "", ())]
         page.emit_steps([each for step in together for each in _roundings(step)])
@@ -135,6 +137,18 @@ def _statements(parts: Sequence[Sequence[Step]]) -> tuple[list[Step], dict[int, 
             together += statement
             seen.update((relation.members[0], relation) for relation in relations)
     return together, apart
+
+
+#: What a page derives before its first section, and a question does not show.
+_DERIVED = {"lagrange", "equations_of_motion", "linearised"}
+
+
+def _derives(step: Step) -> bool:
+    """Return whether a statement of data goes on to what follows from them."""
+    inner = step.steps if isinstance(step, Section) else (step,)
+    return any(
+        isinstance(each, Equal) and each.sentence is not None and each.sentence.key in _DERIVED for each in inner
+    )
 
 
 def _roundings(step: Step) -> Iterator[Step]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from symobs.exact import Matrix, Scalar
 from symobs.exact.core.generators import PIECES, all_roots, functions_in, substitute
-from symobs.formula.tree import At, Block, Derivative, Letter, Literal, SymbolList
+from symobs.formula.tree import At, Block, Conjunction, Derivative, Letter, Literal, SymbolList
 from symobs.proof.derivation.builder import relation
 from symobs.system.decided_signs import by_signs
 from symobs.tasks.analysis.motion_page import state_motion
@@ -23,24 +23,32 @@ if TYPE_CHECKING:
 _LONGEST = 8
 
 
-def state_nonlinear(page: Builder, given: Nonlinear, *further: Matrix | Scalar) -> None:
-    """State the equations of motion, and f and h; `further` values of the same functions may follow."""
+def state_nonlinear(page: Builder, given: Nonlinear, *further: Matrix | Scalar, is_question: bool = False) -> None:
+    """State the equations of motion, and f and h; `further` values of the same functions may follow.
+
+    A question does not show the f that follows from equations of motion.
+    """
     if given.motion is not None:
-        state_motion(page, given.motion)
+        state_motion(page, given.motion, is_question=is_question)
     functions = [function for function in (given.f, given.h) if function is not None]
     page.in_time(*functions, *further)
     time = "discrete" if page.plant.is_discrete else "continuous"
     states, arguments = SymbolList(given.states), SymbolList((*given.states, *given.inputs))
     page.remark(f"nonlinear_{'state_' if given.h is None else ''}{time}", states=states, arguments=arguments)
     page.assume_positive(_radicands(given, functions))
-    shown = [relation(page.set("f_x", given.f), given.f)]
+    law = relation(page.set("f_x", given.f), given.f)
+    shown = [] if is_question and given.motion is not None else [law]
     if given.h is not None:
         shown.append(relation(page.set("h_x", given.h), given.h))
-    page.given(*shown)
+    if shown:
+        page.given(*shown)
 
 
-def state_linearisation(page: Builder) -> None:
-    """State f and h, hold f to its equilibrium, and derive A, B, C and D as partial derivatives there."""
+def state_linearisation(page: Builder, *, is_question: bool = False) -> None:
+    """State f and h, hold f to its equilibrium, and derive A, B, C and D as partial derivatives there.
+
+    A question states what was given alone: the rest is its first step, which `ask_to_linearise` asks for.
+    """
     plant, given = page.plant, page.plant.nonlinear
     assert given is not None  # noqa: S101 - the caller has looked
     m = plant.matrices
@@ -49,7 +57,8 @@ def state_linearisation(page: Builder) -> None:
         given.jacobian(function, names) for function in functions for names in (given.states, given.inputs) if names
     ]
     moved = [_at_equilibrium(given, function) for function in (*functions, *jacobians)]
-    state_nonlinear(page, given, *moved, *(value for _, value in given.equilibrium), m.A, m.B, m.C, m.D)
+    further: list[Matrix | Scalar] = [*moved, *(value for _, value in given.equilibrium), m.A, m.B, m.C, m.D]
+    state_nonlinear(page, given, *further, is_question=is_question)
     page.where(*_pieces_by_signs(moved, plant.symbols.signs))
     page.assume_positive(given.positive)
     f, time = page["f_x"], "discrete" if plant.is_discrete else "continuous"
@@ -57,7 +66,11 @@ def state_linearisation(page: Builder) -> None:
     at_rest = f.formula
     for name, there in given.equilibrium:
         at_rest = At(at_rest, name, there)
-    page.equal(relation(page.term(at_rest), rest), say=f"equilibrium_{time}")
+    rests = relation(page.term(at_rest), rest)
+    if is_question:
+        page.conclude_silently(rests)
+        return
+    page.equal(rests, say=f"equilibrium_{time}")
     lines = []
     for letter, function, name in (("A", given.f, "f_x"), ("C", given.h, "h_x")):
         for matrix, names in ((letter, given.states), ({"A": "B", "C": "D"}[letter], given.inputs)):
@@ -71,6 +84,19 @@ def state_linearisation(page: Builder) -> None:
             between = [_there(page, given, Literal(jacobian))] if is_told else []
             lines.append(relation(page[matrix], columns, *between, value))
     page.equal(*lines, say="linearised")
+
+
+def ask_to_linearise(page: Builder) -> None:
+    """Ask for the linearisation, and say what its letters are; what the equilibrium leaves free has no value there."""
+    plant, given = page.plant, page.plant.nonlinear
+    assert given is not None  # noqa: S101 - the caller has looked
+    fixed = [(name, value) for name, value in given.equilibrium if name not in given.free] or given.equilibrium
+    names, values = zip(*fixed, strict=True)
+    laws = [page.line("x' = A x + B u" if plant.matrices.has_input else "x' = A x")]
+    if plant.matrices.has_output:
+        laws.append(page.line("y = C x + D u" if plant.matrices.has_feedthrough else "y = C x"))
+    there = Matrix.row(values) if len(values) > 1 else values[0]
+    page.remark("linearise", names=SymbolList(names), values=there, laws=Conjunction(tuple(laws)))
 
 
 def _pieces_by_signs(values: Sequence[Matrix], signs: Mapping[str, str]) -> list[Scalar]:

@@ -20,10 +20,10 @@ ZERO = Scalar.of(0)
 MOST_MOMENTA = 9
 
 
-def state_motion(page: Builder, motion: Motion) -> None:
+def state_motion(page: Builder, motion: Motion, *, is_question: bool = False) -> None:
     """State the equations as given, or derive them from the energies, and solve them for the highest derivatives.
 
-    These mean what they are solved for: each equation is held to that.
+    These mean what they are solved for: each equation is held to that.  A question derives and solves nothing.
     """
     M, rest = motion.mass, motion.rest
     solved = Matrix.column([simplified(value) for value in M.solve(-rest).entries])
@@ -31,7 +31,10 @@ def state_motion(page: Builder, motion: Motion) -> None:
     w = Matrix.column([page.name_coefficient(*pair) for pair in zip(motion.highest, solved.entries, strict=True)])
     several = len(motion.equations) > 1
     if motion.kinetic is not None:
-        _tell_energies(page, motion)
+        _state_energies(page, motion)
+        if is_question:
+            return
+        _tell_slopes(page, motion)
         law = relation(page.value(M) @ page.value(w), -rest) if several else relation(M[0, 0] * w[0, 0], -rest[0, 0])
         page.equal(law, say="lagrange")
         if len(motion.coordinates) <= MOST_MOMENTA:
@@ -39,6 +42,8 @@ def state_motion(page: Builder, motion: Motion) -> None:
     else:
         sides = (relation(left, right) for left, right in motion.sides)
         page.equal(*sides, say="equations_of_motion", coordinates=SymbolList(motion.coordinates))
+        if is_question:
+            return
     if any(not M[i, j].is_zero for i in range(len(w.entries)) for j in range(len(w.entries)) if i != j):
         page.set("M_q", M)
         determinant = simplified(M.determinant())
@@ -46,7 +51,7 @@ def state_motion(page: Builder, motion: Motion) -> None:
         page.remark("solved_for_highest", derivatives=SymbolList(motion.highest))
 
 
-def _tell_energies(page: Builder, motion: Motion) -> None:
+def _state_energies(page: Builder, motion: Motion) -> None:
     assert motion.kinetic is not None  # noqa: S101 - the caller has looked
     assert motion.potential is not None  # noqa: S101
     page.remark(
@@ -58,6 +63,11 @@ def _tell_energies(page: Builder, motion: Motion) -> None:
         forces = Matrix.column(motion.forces)
         shown.append(relation(page.set("Q_q", forces), forces))
     page.given(*shown)
+
+
+def _tell_slopes(page: Builder, motion: Motion) -> None:
+    assert motion.kinetic is not None  # noqa: S101 - as above
+    assert motion.potential is not None  # noqa: S101
     lines = [
         relation(page.term(Derivative(Letter(letter), name)), slope)
         for q in motion.coordinates

@@ -163,7 +163,8 @@ def given(
     """State the plant, and the desired poles or polynomials by name (`control`, `observer`, …).
 
     `where` says further of which parameters the page speaks; `disturbed` is the E of ẋ = A x + B u + E d, `by` the letter of d.
-    What an answer about a linearisation says of the plant itself is said with the answer, not with an `is_question`.
+    What an answer about a linearisation says of the plant itself is said with the answer, not with an `is_question`, and so are
+    the matrices of a linearisation.
     """
     plant, m = page.plant, page.plant.matrices
     with page.section("given"):
@@ -173,10 +174,10 @@ def given(
             from symobs.tasks.analysis import linearisation_page  # noqa: PLC0415 - of such plants alone
 
             if not plant.nonlinear.equilibrium:
-                linearisation_page.state_nonlinear(page, plant.nonlinear)
+                linearisation_page.state_nonlinear(page, plant.nonlinear, is_question=is_question)
                 state_signs(page)
                 return
-            linearisation_page.state_linearisation(page)
+            linearisation_page.state_linearisation(page, is_question=is_question)
         page.set("A", m.A)
         relations = []
         rate = _as_given(page, m.A) @ page["x"]
@@ -196,14 +197,16 @@ def given(
                 output = output + _as_given(page, m.D) @ page["u"]
             relations.append(relation(page["y"], output))
             page.environment = page.environment.extended_by(signals={"y": output.formula})
-        page.given(*relations)
+        is_found = plant.nonlinear is not None and is_question  # by the student
+        page.given(*relations, silent=is_found)
         _hold_to_letters(page, by)
         _state_dead_time(page)
         if plant.is_from_floats:
             page.remark("from_floats")
         if plant.is_rounded:
             page.remark("data_rounded", digits=str(DATA_DIGITS))
-        _say_decimals(page)
+        if not is_found:
+            _say_decimals(page)
         state_signs(page)
         if plant.nonlinear is not None and not is_question:
             page.remark("linearisation_proves")

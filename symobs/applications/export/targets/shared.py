@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from symobs.applications.export.questions import placed
 from symobs.applications.grader import claims, values
 from symobs.ground.errors import InputError, ProblemErrors
 
@@ -37,13 +38,17 @@ def as_json(data: Any) -> str:
 
 
 def refuse(exercises: Sequence[ExerciseSet], why: Callable[[Exercise, ExportedPart], tuple[str, str] | None]) -> None:
-    """Raise `ProblemErrors` with every part that a platform cannot hold: `why` says the reason and the repair."""
-    found: dict[tuple[str, str, str], InputError] = {}
-    for exercise in (each for group in exercises for each in group.variants):
+    """Raise `ProblemErrors` with every part that a platform cannot hold: `why` says the reason and the repair.
+
+    Of the variants of one question the first that is refused for a reason stands for all.
+    """
+    found: dict[tuple[int, str, str, str], InputError] = {}
+    for number, exercise in ((number, each) for number, group in enumerate(exercises) for each in group.variants):
         for part in exercise.parts:
             told = why(exercise, part)
             if told is not None:
-                found.setdefault((part.part, *told), InputError(told[0], where=part.part, repair=told[1]))
+                where = placed(exercise.file, part.part)
+                found.setdefault((number, part.part, *told), InputError(told[0], where=where, repair=told[1]))
     if found:
         raise ProblemErrors(tuple(found.values()))
 

@@ -278,13 +278,16 @@ def write_root_locus(page: Builder, result: RootLocus) -> None:
 def _polynomials(page: Builder, result: RootLocus) -> None:
     """Write p, q and p + k q."""
     plant, written, k = page.plant, result.written, page.value(Scalar.symbol("k"))
-    page.define("F", factored_form(page, written.value), say="locus_controller", closing=False)
+    if written.value.is_one:
+        page.remark("locus_gain")
+    else:
+        page.define("F", factored_form(page, written.value), say="locus_controller", closing=False)
     opened, below = page["det(pencil(A))"], monic(written)[1]
     opened = opened if below.is_one else opened @ page.value(below)
     page.define("chi_o", opened, page.value(result.answer["p"]), say="locus_poles", closing=False)
     response = page["C pencil(A)^-1 B"]
     response = response + page["D"] if plant.matrices.has_feedthrough else response
-    loop = page("chi_o F {response}", response=response)
+    loop = page("chi_o F {response}" if page.defines("F") else "chi_o {response}", response=response)
     page.define(
         "q", loop if result.sign > 0 else -loop, page.value(result.answer["q"]), say="locus_zeros", closing=False
     )

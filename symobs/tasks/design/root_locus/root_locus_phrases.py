@@ -5,6 +5,7 @@ from __future__ import annotations
 PHRASES: dict[str, str] = {
     "root_locus": "Root locus.",
     "locus_controller": "The loop is closed by the controller, times the gain $k$,",
+    "locus_gain": "The loop is closed by the gain $k$.",
     "locus_poles": "The denominator of the loop, without any cancelling, is",
     "locus_zeros": "its numerator, with the sign of the feedback, is",
     "locus_moved": "so that the poles of the closed loop are the roots of",

@@ -224,3 +224,25 @@ def test_the_gains_of_integral_action_are_refused(tmp_path: Path) -> None:
     assert ended.code == 3
     assert "integral_action.k_I: an exported grader does not hold K and k_I" in ended.err
     assert not (tmp_path / "out").exists()
+
+
+#: A gain with a third, which no platform of decimals holds, and one without.
+THIRD = 'task = "observer"\n[plant]\nA = "[0 1; 0 0]"\nC = "[3 0]"\n[specification]\npoles = [-1, -1]\n'
+WHOLE = THIRD.replace("3 0", "1 0")
+RANK = 'task = "observability"\n[plant]\nA = "[0 1; 0 0]"\nC = "[1 0]"\n'
+
+
+def test_a_refusal_of_several_files_names_the_file(tmp_path: Path) -> None:
+    for name, text in (("first", WHOLE), ("second", THIRD), ("third", THIRD), ("rank", RANK)):
+        (tmp_path / f"{name}.toml").write_text(f'title = "{name}"\n{text}')
+
+    def refused(*arguments: str) -> list[str]:
+        ran = inside("export", *arguments, "-o", "out", folder=tmp_path)
+        assert ran.code
+        return [line.partition(": ")[0] for line in ran.err.splitlines()]
+
+    places = refused("first.toml", "second.toml", "third.toml", "--to", "moodle")
+    assert places == ["second.toml, observer.L", "third.toml, observer.L"]
+    assert refused("second.toml", "--to", "moodle") == ["observer.L"]
+    assert refused("first.toml", "rank.toml", "--to", "stack", "--asked", "observer.L") == ["rank.toml, --asked"]
+    assert refused("first.toml", "missing.toml", "--to", "stack") == ["missing.toml"]
