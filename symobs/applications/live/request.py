@@ -43,7 +43,7 @@ _KEYS = {
 }  # fmt: skip
 
 
-_COURSES = {"start", "estimate", "end", "count", "step", "fine"}
+_COURSES = {"start", "estimate", "end", "count", "step"}
 _GOALS = {"settling", "overshoot", "gain", "phase"}
 _NAME = re.compile(r"\d+\.?\d*(?:[eE][+-]?\d+)?|[A-Za-z_]\w*")
 _SYMBOL = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
@@ -68,14 +68,17 @@ class FieldError(InputError):
 
 @dataclass
 class Responses:
-    """Which time responses are wanted: from an initial state and estimate, or to a step; last instant, how many instants."""
+    """Which time responses are wanted: from an initial state and estimate, or to a step; last instant, how many instants.
+
+    They are `fine`, and read off wherever that can be done, unless something moves.
+    """
 
     start: str = ""
     estimate: str = ""
     end: str | None = None
     count: int = 129
     step: bool = False
-    fine: bool = False
+    fine: bool = True
 
 
 @dataclass
@@ -218,8 +221,8 @@ def read(body: object) -> Request:
         task = None
     names = _names(body.get("cards"), note)
     at = _at(body.get("at", {}), note)
-    responses = _responses(body.get("courses"), note)
     cards_at, cases, moving, goal = truth("cards_at"), truth("cases"), truth("moving"), body.get("goal", {})
+    responses = _responses(body.get("courses"), note, moving=moving)
     if not isinstance(goal, Mapping) or not _GOALS.issuperset(goal) or not all(map(_is_short, goal.values())):
         note("another object is expected", "goal", f"its keys are {', '.join(sorted(_GOALS))}, its values texts")
         goal = {}
@@ -283,7 +286,7 @@ def _at(value: object, note: Any) -> dict[str, str]:
     return found
 
 
-def _responses(value: object, note: Any) -> Responses | None:
+def _responses(value: object, note: Any, *, moving: bool) -> Responses | None:
     if value is None:
         return None
     if not isinstance(value, Mapping) or not _COURSES.issuperset(value):
@@ -298,12 +301,11 @@ def _responses(value: object, note: Any) -> Responses | None:
     if not isinstance(count, int) or isinstance(count, bool) or not 2 <= count <= _MOST_INSTANTS:
         note(f"a number from 2 to {_MOST_INSTANTS} is expected", "courses.count", 'write "count": 129')
         return None
-    flags = {name: value.get(name, False) for name in ("step", "fine")}
-    for name, flag in flags.items():
-        if not isinstance(flag, bool):
-            note("true or false is expected", f"courses.{name}", f'write "{name}": true')
-            return None
-    return Responses(texts["start"], texts["estimate"], end, count, **flags)
+    step = value.get("step", False)
+    if not isinstance(step, bool):
+        note("true or false is expected", "courses.step", 'write "step": true')
+        return None
+    return Responses(texts["start"], texts["estimate"], end, count, step, fine=not moving)
 
 
 # -- values in the place of symbols -----------------------------------------------------------------------------------

@@ -61,12 +61,12 @@ class Signals:
         drawn: list[tuple[str, Matrix, bool]],
         driven: Matrix | None = None,
         *,
-        discrete: bool = False,
+        discrete: bool,
     ) -> None:
         """Take the signals apart into rows; a reference that enters by `driven` and stays 1 is the last state."""
         from symobs.exact.time_functions.matrix_exponential import eigenvalues_near, fraction_near, fractions_near  # noqa: PLC0415 - FLINT
 
-        order = loop.shape[0]
+        order = self.order = loop.shape[0]
         self.matrix, self.start, self.modes = loop, start, eigenvalues_near(loop)
         self.converges = max(map(abs, self.modes)) < 1 if discrete else max(mode.real for mode in self.modes) < 0
         if driven is not None:
@@ -100,7 +100,7 @@ def responses_of(result: Result, asked: Responses) -> dict[str, Any]:
     drawn for half as long again, or longer.
     """
     signals, discrete = _signals(result, asked), result.plant.is_discrete
-    end = _end(signals.modes, asked.end, discrete=discrete)
+    end = _end(signals, asked.end, discrete=discrete)
     found = _drawn(signals, end, asked, discrete=discrete)
     lines = found["lines"] + found.get("effort", {}).get("lines", [])
     is_open = any(line.get("peak", "0") != "0" and "settles" not in line for line in lines)
@@ -177,21 +177,23 @@ def _signals(result: Result, asked: Responses) -> Signals:
     size = loop.shape[0]
     match result.task:
         case "observer":
-            return Signals(loop, error, [("e", Matrix.identity(order), False)])
+            return Signals(loop, error, [("e", Matrix.identity(order), False)], discrete=is_discrete)
         case "reduced_order_observer":
-            return Signals(loop, _below(fields["T"], error, size), [("e_2", Matrix.identity(size), False)])
+            drawn = [("e_2", Matrix.identity(size), False)]
+            return Signals(loop, _below(fields["T"], error, size), drawn, discrete=is_discrete)
         case "state_feedback":
             x = Matrix.identity(order)
-            return Signals(loop, state, [("x", x, False), _input(fields["K"] @ x)])
+            return Signals(loop, state, [("x", x, False), _input(fields["K"] @ x)], discrete=is_discrete)
         case "integral_action":
             x = Matrix.identity(size).select(range(order), range(size))
             gains = Matrix.block([[fields["K"], -fields["k_I"]]])
-            return Signals(loop, [*state, *[Fraction(0)] * (size - order)], [("x", x, False), _input(gains)])
+            start = [*state, *[Fraction(0)] * (size - order)]
+            return Signals(loop, start, [("x", x, False), _input(gains)], discrete=is_discrete)
     unseen, hidden = _unseen(result, order, size - order)
     start = [*state, *([] if not hidden else error if unseen is None else _below(unseen, error, hidden))]
     x, x_hat = _state_and_estimate(order, unseen, hidden)
     drawn = [("x", x, False)] + ([("x_hat", x_hat, True)] if hidden else [])
-    return Signals(loop, start, [*drawn, _input(fields["K"] @ x_hat)])
+    return Signals(loop, start, [*drawn, _input(fields["K"] @ x_hat)], discrete=is_discrete)
 
 
 def _input(gain: Matrix) -> tuple[str, Matrix, bool]:
@@ -269,7 +271,7 @@ def _vector(text: str, size: int, otherwise: Fraction, where: str) -> list[Fract
 # -- when -------------------------------------------------------------------------------------------------------------
 
 
-def _end(modes: Sequence[complex], asked: str | None, *, discrete: bool) -> Fraction:
+def _end(signals: Signals, asked: str | None, *, discrete: bool) -> Fraction:
     """Return the last instant: as it was asked for, or where the slowest mode has converged."""
     if asked is not None:
         (value,) = _vector(asked, 1, Fraction(1), "courses.end")
@@ -277,10 +279,11 @@ def _end(modes: Sequence[complex], asked: str | None, *, discrete: bool) -> Frac
             raise InputError("no such last instant", where="courses.end", repair='write a positive number: "3"')
         return value
     if discrete:
-        radius, order = max(map(abs, modes)), len(modes)
+        radius, order = max(map(abs, signals.modes)), signals.order
         usual = order + 2 if radius < _DEAD else ceil(_TIMES / -log(radius)) if radius < 1 else _SAMPLES
         return Fraction(max(6, min(usual, _SAMPLES)))
-    largest, smallest = max(mode.real for mode in modes), min(mode.real for mode in modes)
+    parts = [mode.real for mode in signals.modes]
+    largest, smallest = max(parts), min(parts)
     if largest > 0:
         return rounded_up(_GROWN / largest)
     slowest = -largest if largest < 0 else max(-smallest, 0.0) / 4
@@ -293,8 +296,8 @@ def _end(modes: Sequence[complex], asked: str | None, *, discrete: bool) -> Frac
 def _enclosed(signals: Signals, end: Fraction, asked: Responses) -> tuple[int, list[list[int]], list[list[int]]]:
     """Return the heights of every signal in fine parts, within a quarter of the finest ones that are shown.
 
-    There are as many as were asked for, as many again up to twice the end, and twice as many, or more, where they are to be
-    fine: segments are halved where a response changes fast, and its heights stand closer where it could not be read off.
+    There are as many as were asked for, and as many again up to twice the end.  Where they are to be fine there are twice as
+    many or more: segments are halved where a response changes fast, and heights stand closer where it could not be read off.
     The first number tells how many heights there are to a segment.
     """
     segments, fastest = asked.count - 1, max(map(abs, signals.modes)) * float(end)

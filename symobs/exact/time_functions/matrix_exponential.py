@@ -386,7 +386,7 @@ def _doubled(
             return None
         lines = _combined(table, lines, ones, fmpz(1) << width * columns, width, bits)
         off, most = (((norm + order) * off + order * most) >> bits) + 2, (norm * most >> bits) + 1
-    words = (most >> kept).bit_length() // 64 + 1
+    words = ((most + (1 << kept - 1)) >> kept).bit_length() // 64 + 1  # of what is rounded
     if off >= 1 << (kept - 1) or 64 * words >= width - kept:
         return None
     half, low, above = ones << (width - 1), ones << (kept + 62), (ones << width) - (ones << (kept + 63))

@@ -10,6 +10,7 @@ from dataclasses import replace
 from datetime import date
 from fractions import Fraction
 from functools import cached_property
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from symobs.formula.phrases.languages import Language, language_named
@@ -166,11 +167,17 @@ class Sheet:
     def apart(self) -> tuple[Sheet, ...]:
         """The sheets that it consists of: itself, or the questions of each version and the key to all of them.
 
-        An examination of variants that is handed out is one for each student.
+        An examination of the variants of one problem, which lie in one folder, is one for each student.
         """
-        if self.header.is_exam and not self.has_solutions and all(entry.variant for entry in self.entries):
-            return tuple(replace(self, entries=(entry,)) for entry in self.entries)
         versions = tuple(dict.fromkeys(entry.version for entry in self.entries))
+        folders = {PurePath(entry.file).parent for entry in self.entries if entry.variant and not entry.version}
+        if (
+            self.header.is_exam
+            and not self.has_solutions
+            and len(folders) == 1
+            and all(e.variant for e in self.entries)
+        ):
+            return tuple(replace(self, entries=(entry,)) for entry in self.entries)
         if len(versions) < 2:
             return (self,)
         found = []

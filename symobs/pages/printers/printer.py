@@ -200,6 +200,8 @@ class Printer(FormulaWriter[B]):
                 return self.numeral(text)
             case Identity():
                 return self.identity()
+            case Transpose(Literal(Matrix() as value)) if self.running and value.shape[1] == 1:
+                return self.plain_matrix(value.T)
             case Transpose(operand):
                 return self.transposed(self.base(operand))
             case Apply(function, argument):

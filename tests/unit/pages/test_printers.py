@@ -634,3 +634,9 @@ def test_the_argument_of_a_cosine_ends_where_it_is_seen_to() -> None:
 def test_formulas_look_as_in_a_book(formula: Formula, latex: str, text: str) -> None:
     assert LatexPrinter().unbroken(formula) == latex
     assert TextPrinter().inline(formula) == text
+
+
+def test_a_transposed_column_in_a_line_has_no_second_sign() -> None:
+    column = Literal(Matrix.of([[1], [2], [3]]))
+    assert LatexPrinter().inline(column).count("mathsf T") == 1
+    assert "mathsf T" not in LatexPrinter().inline(Transpose(column))

@@ -200,7 +200,7 @@ export function mount(element, transport, options = {}) {
           drawPoint(got, asked);
           if (waiting || moving || got.status !== "done") continue;
         }
-        const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, step: isStep(), end: null, count: 129, fine: !moving } : undefined;
+        const at = free(), courses = open("responses") ? { start: s.x0, estimate: s.xh0, step: isStep(), end: null, count: 129 } : undefined;
         const more = { at, moving, goal: s.goal, cards_at: Object.keys(at).length > 0, cases: !moving && open("cases"), loop: open("loop") ? (moving ? "moving" : "rest") : "none" };
         if (courses) more.courses = courses;
         const asked = question("answer"), got = await transport(asking("answer", more));

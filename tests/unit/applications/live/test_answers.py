@@ -69,6 +69,7 @@ def asked(problem: object, want: str = "answer", **more: object) -> dict[str, An
     found = answer({"schema": "symobs-live/1", "id": 7, "want": want, "problem": problem, **more})
     SCHEMA.validate(json.loads(json.dumps(found)))
     assert found["id"] == 7
+    assert more.get("moving") or all({"latex", "says"} <= card.keys() for card in found.get("cards", ()))
     return found
 
 
@@ -202,7 +203,7 @@ def _decimal(entry: str) -> Any:
 
 def test_what_moves_has_as_many_instants_as_were_asked_for_and_what_rests_those_it_needs() -> None:
     fast = {**SERVO, "specification": {"control_poles": "-1, -20", "observer_poles": "-40, -40"}}
-    moving, resting = (asked(fast, moving=is_moving, courses={"fine": not is_moving}) for is_moving in (True, False))
+    moving, resting = (asked(fast, moving=is_moving, courses={}) for is_moving in (True, False))
     coarse, fine = (found["courses"]["lines"] for found in (moving, resting))
     assert {len(line["heights"]) for line in coarse} == {129}
     step = (len(fine[0]["heights"]) - 1) // 128
@@ -214,10 +215,72 @@ def test_what_moves_has_as_many_instants_as_were_asked_for_and_what_rests_those_
     assert all(card["latex"] and card["says"] for card in resting["cards"])
 
 
+def test_a_deadbeat_loop_is_drawn_until_it_rests() -> None:
+    """Seven poles at 0 take seven steps: A^7 = 0."""
+    shift = "; ".join(" ".join("1" if j == i + 1 else "0" for j in range(7)) for i in range(7))
+    plant = {"A": f"[{shift}]", "B": "[0; 0; 0; 0; 0; 0; 1]", "dt": True}
+    found = asked(
+        {"task": "state_feedback", "plant": plant, "specification": {"poles": "0, 0, 0, 0, 0, 0, 0"}}, courses={}
+    )
+    first = found["courses"]["lines"][0]["heights"]
+    assert len(first) > 8
+    assert first[:7] == [1000] * 7
+    assert not any(first[7:])
+
+
+def test_a_discrete_response_is_drawn_until_it_has_settled() -> None:
+    """x(k) of a triple pole at 1/2 falls as k² 2⁻ᵏ."""
+    plant = {"A": "[0 1 0; 0 0 1; 0 0 0]", "B": "[0; 0; 1]", "dt": True}
+    found = asked({"task": "state_feedback", "plant": plant, "specification": {"poles": "1/2, 1/2, 1/2"}}, courses={})
+    lines = [line for line in found["courses"]["lines"] if line["signal"] == "x"]
+    assert all("settles" in line for line in lines)
+    loop, state, peaks = np.array([[0, 1, 0], [0, 0, 1], [1 / 8, -3 / 4, 3 / 2]]), np.ones(3), list[list[float]]()
+    for _ in range(60):
+        peaks.append(list(abs(state)))
+        state = loop @ state
+    for line, course in zip(lines, np.array(peaks).T, strict=True):
+        last = np.nonzero(course > 0.02 * max(course))[0][-1]
+        assert last <= float(line["settles"]) <= last + 1
+
+
+def test_answers_do_not_depend_on_those_before_them() -> None:
+    """The plant is kept from question to question, and what was printed; the same matrices stand for several plants here."""
+    from symobs.applications.live import answering, request  # noqa: PLC0415 - what they keep is emptied here
+    from symobs.pages import cards  # noqa: PLC0415
+
+    A, named = (
+        {"A": "[0 1; 0 -a]", "B": "[0; 1]", "C": "[1 0]"},
+        {"control_poles": "-2, -2", "observer_poles": "-3, -3"},
+    )
+    whole = {"task": "compensator", "plant": A, "specification": named, "symbols": {"a": "positive"}}
+    problems = [
+        whole,
+        {**whole, "symbols": {"a": {"sign": "negative", "latex": "\\alpha"}}},
+        {**whole, "convention": "u = K x_hat, A + M C"},
+        {**whole, "plant": {**A, "dt": True}, "specification": {"control_poles": "0, 0", "observer_poles": "0, 0"}},
+        {**whole, "symbols": {}, "constants": {"a": "2"}},
+        {**whole, "task": "observer", "specification": {"poles": "-3, -3"}},
+        {**whole, "language": "de"},
+    ]
+
+    def fresh(problem: dict[str, Any]) -> dict[str, Any]:
+        request._plants.clear()
+        answering._solved.clear()
+        cards._memory.cache_clear()
+        return asked(problem)
+
+    wanted = [fresh(problem) for problem in problems]
+    assert len({json.dumps(each) for each in wanted}) == len(problems)
+    for order in (range(len(problems)), reversed(range(len(problems)))):
+        for place in order:
+            answering._solved.clear()
+            assert asked(problems[place]) == wanted[place]
+
+
 @tabled
 def test_peak_and_settling_are_those_of_the_whole_response(poles: str) -> None:
     chain = {"A": "[0 1 0; 0 0 1; 0 0 0]", "C": "[1 0 0]"}
-    found = asked({"task": "observer", "plant": chain, "specification": {"poles": poles}}, courses={"fine": True})
+    found = asked({"task": "observer", "plant": chain, "specification": {"poles": poles}}, courses={})
     error = np.array([[float(Fraction(entry)) for entry in row] for row in found["result"]["A"]])
     end, count = float(found["courses"]["end"]), 40_001
     times = np.linspace(0, 2 * end, count)

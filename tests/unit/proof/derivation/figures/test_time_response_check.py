@@ -120,6 +120,14 @@ def test_a_response_is_found_to_one_part_whatever_bits_it_begins_with(
                 assert abs(line[k] - 10**15 * value) <= 1
 
 
+@pytest.mark.parametrize("power", [63, 127])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_value_that_is_rounded_to_a_power_of_two_keeps_its_sign(power: int, sign: int) -> None:
+    start = sign * (2**power - Fraction(1, 4)) / 10**15
+    (found,) = state_response(Matrix.of([[0]]), (start,), Fraction(1), 5, 10**15)
+    assert all(abs(value - start * 10**15) <= 1 for value in found)
+
+
 def test_errors_add_up_side_by_side_and_the_larger_counts_one_above_the_other() -> None:
     one, other = plot_check._Enclosed.of([[1, 2]], 5), plot_check._Enclosed.of([[3, 4]], 7)
     assert one.beside(other) == ([[1, 2, 3, 4]], 10, 12)
