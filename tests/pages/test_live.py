@@ -342,6 +342,7 @@ def test_nothing_of_another_problem_can_be_moved(opened: Callable[..., Opened]) 
         live.context.set_offline(offline=False)
         live.page.get_by_role("button", name="Try again").first.click()
         live.wait_for("!document.querySelector('.symobs-live.busy, [inert]')")
+    live.at_rest()
     live.complaints.clear()
 
 
