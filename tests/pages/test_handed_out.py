@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
@@ -332,3 +333,17 @@ def test_a_sheet_without_a_file_has_no_head() -> None:
 def test_a_source_stands_once_on_a_sheet_of_questions_and_solutions(name: str, folder: Path) -> None:
     assert written(folder, "", "--format", name).count("Another book") == 1
     assert written(folder, "", "--solutions", "--format", name).count("Another book") == 1
+
+
+def test_variants_of_one_problem_are_examinations_apart_and_those_of_two_are_one() -> None:
+    def parts(*entries: SheetEntry) -> list[tuple[int, ...]]:
+        sheet = Sheet("T", entries, header=Header(is_exam=True), has_solutions=False)
+        return [tuple(entry.number for entry in part.entries) for part in sheet.apart]
+
+    own, other = (SheetEntry(k, f"own/v00{k}.toml", "t", variant=f"a{k}") for k in (1, 2))
+    beside = SheetEntry(3, "beside/v001.toml", "t", variant="b1")
+    assert parts(own, other) == [(1,), (2,)]
+    assert parts(own, beside) == [(1, 3)]
+    assert parts(own, SheetEntry(4, "own/plain.toml", "t")) == [(1, 4)]
+    assert parts(*(replace(entry, version=letter) for entry, letter in ((own, "A"), (other, "B")))) == [(1,), (2,)]
+    assert parts() == [()]
